@@ -1,12 +1,14 @@
 //! The straight line from sample to sample: every clock adds the difference of two samples, and a step is demanded where
 //! the sum passes a whole number of units per step M.
 //!
-//! `sum` is the distance to the next step in the direction of travel, −M ‥ −1, so that its sign alone shows a step. Going
-//! up it is u − M, for u units above the middle below; going down it is −1 − u. A new direction turns the one into the
-//! other: `~sum − M`. A clock that has passed a middle leaves 0 or more, and the next one takes M back: the subtraction
-//! shares the adder with the movement.
+//! The line is u units above the middle below, 0 ‥ M − 1. `sum` is u going down, and u − M going up, so that its sign alone
+//! shows a step. A clock that has passed a middle leaves `sum` beyond, and the next one corrects it by M; so does a new
+//! direction, and both at once cancel out. The correction is a constant that needs only a few bits of control.
 //!
-//! The magnitude of a negative difference is its complement plus one; the one is the adder's carry.
+//! Three operands in one sum make Yosys save carries in LUTs, at twice the area. So `step` has a bit below, which is 0.
+//!
+//! Standing leaves 0 in `sum`, which going up is u = 0, a middle that has just been passed. `halfway` says that u is half of
+//! M instead; the first clock of the movement adds it.
 
 use crate::prelude::*;
 use posicast_blocks::step_generator::StepGeneratorConfig;
@@ -20,12 +22,11 @@ kernel! {
     outputs { keeps: Bit, too_fast: Bit, demands_up: Bit, demands_down: Bit }
     registers {
         taken: Bits<32>, difference: Bits<32>, fresh: Bit, moving: Bit, phase: Bits<17>, sum: Bits<A>,
-        downwards: Bit, moved: Bit,
+        downwards: Bit, halfway: Bit, moved: Bit,
     }
     wires {
         position_bits: Bits<32>, negative: Bit, magnitude: Bits<32>, above: Bit, goes_on: Bit, last: Bit,
-        takes: Bit, turns: Bit, passed: Bit, signed_sum: Signed<A>, from: Bits<A>, part: Bits<A>, taken_back: Bits<A>,
-        step: Bits<A>, from_with_carry: Bits<B>, step_with_carry: Bits<B>, next_sum: Bits<B>,
+        takes: Bit, turns: Bit, below: Bit, passed: Bit, correction: Bits<A>, moves: Bits<A>, step: Bits<B>,
     }
     constants {
         whole_bits: Bits<32> = from_u64(whole_bits(config)),
@@ -35,10 +36,12 @@ kernel! {
         one_phase: Bits<17> = from_u64(1),
         used_phase: Bits<17> = from_u64(u64::from(config.tick_clocks()).next_power_of_two() - 1),
         last_phase: Bits<17> = from_u64(u64::from(config.tick_clocks()) - 1),
-        no_distance: Signed<A> = from_i64(0),
-        one_step_down: Bits<A> = from_u64((-i64::from(config.step_units())) as u64),
-        half_step_down: Bits<A> = from_u64((-i64::from(config.step_units().div_ceil(2))) as u64),
-        carry: Bits<B> = from_u64(1),
+        sum_sign: Bits<A> = from_u64(1 << (config.accumulator_bits() - 1)),
+        no_distance: Bits<A> = from_u64(0),
+        one_up: Bits<A> = from_u64(config.step_units().into()),
+        one_down: Bits<A> = from_u64((-i64::from(config.step_units())) as u64),
+        half_up: Bits<A> = from_u64((config.step_units() / 2).into()),
+        half_down: Bits<A> = from_u64((-i64::from(config.step_units().div_ceil(2))) as u64),
     }
 }
 
@@ -84,29 +87,30 @@ impl<const A: usize, const B: usize> Logic for StepInterpolation<A, B> {
             self.taken.d.next = self.position_bits.val();
         }
 
-        comment!("The distance to the next step, and the part of a clock");
+        comment!("The distance to the next step: one clock further");
         self.turns.next = self.downwards.q.val() ^ self.negative.val();
-        self.signed_sum.next = signed_cast(self.sum.q.val());
-        self.passed.next = self.signed_sum.val() >= self.no_distance.val();
-        self.from.next = self.sum.q.val();
-        if self.turns.val() {
-            self.from.next = !self.sum.q.val();
-        }
-        self.part.next = bit_cast::<A, 32>(self.magnitude.val());
-        self.taken_back.next = self.part.val() + self.one_step_down.val();
-        self.step.next = self.part.val();
+        self.below.next = (self.sum.q.val() & self.sum_sign.val()).any();
+        self.passed.next = !(self.downwards.q.val() ^ self.below.val());
+        self.correction.next = self.no_distance.val();
         if self.passed.val() ^ self.turns.val() {
-            self.step.next = self.taken_back.val();
+            self.correction.next = self.one_down.val();
+            if self.negative.val() {
+                self.correction.next = self.one_up.val();
+            }
         }
-        self.from_with_carry.next = (bit_cast::<B, A>(self.from.val()) << 1) | self.carry.val();
-        self.step_with_carry.next = bit_cast::<B, A>(self.step.val()) << 1;
-        if self.negative.val() {
-            self.step_with_carry.next = (bit_cast::<B, A>(self.step.val()) << 1) | self.carry.val();
+        if self.halfway.q.val() {
+            self.correction.next = self.half_down.val();
+            if self.negative.val() {
+                self.correction.next = self.half_up.val();
+            }
         }
-        self.next_sum.next = self.from_with_carry.val() + self.step_with_carry.val();
+        comment!("The added bit keeps two carry chains apart");
+        self.moves.next = bit_cast::<A, 32>(self.difference.q.val());
+        self.step.next = (bit_cast::<B, A>(self.moves.val()) << 1) + (bit_cast::<B, A>(self.correction.val()) << 1);
         if self.moving.q.val() {
-            self.sum.d.next = self.next_sum.val().get_bits::<A>(1);
+            self.sum.d.next = self.sum.q.val() + self.step.val().get_bits::<A>(1);
             self.downwards.d.next = self.negative.val();
+            self.halfway.d.next = false;
         }
         self.moved.d.next = self.moving.q.val() & self.goes_on.val();
         self.demands_up.next = self.moved.q.val() & self.passed.val() & !self.downwards.q.val();
@@ -115,11 +119,9 @@ impl<const A: usize, const B: usize> Logic for StepInterpolation<A, B> {
         comment!("Standing: from the last half or whole step on");
         if self.stands.val() {
             self.taken.d.next = self.position_bits.val() & self.whole_bits.val();
+            self.sum.d.next = self.no_distance.val();
             self.downwards.d.next = false;
-            self.sum.d.next = self.half_step_down.val();
-            if (self.position_bits.val() & self.half_bit.val()).any() {
-                self.sum.d.next = self.one_step_down.val();
-            }
+            self.halfway.d.next = !(self.position_bits.val() & self.half_bit.val()).any();
         }
     }
 }

@@ -22,12 +22,15 @@ kernel! {
     }
     wires {
         exceeds: Bit, stands: Bit, gives_up: Bit, gives_down: Bit, change: Bits<32>, next_count: Bits<32>,
-        demanded: Bits<3>, given: Bits<3>, balance: Bits<3>, more: Signed<16>, next_owed: Bits<16>, pulses_up: Bit,
+        demanded: Bits<3>, given: Bits<3>, balance: Bits<3>, more: Signed<16>, next_owed: Bits<16>, owed_all: Bits<16>, pulses_up: Bit,
         pulses_down: Bit, pulses: Bit, quadrature_a: Bit,
     }
     constants {
+        used_owed: Bits<16> = from_u64(used_owed(config)),
+        unused_owed: Bits<16> = from_u64(0xffff ^ used_owed(config)),
+        owed_sign: Bits<16> = from_u64(used_owed(config).div_ceil(2)),
         too_many_up: Bits<16> = from_u64(u64::from(config.owed_limit()) + 1),
-        too_many_down: Bits<16> = from_u64((-1 - i64::from(config.owed_limit())) as u64),
+        too_many_down: Bits<16> = from_u64((-1 - i64::from(config.owed_limit())) as u64 & used_owed(config)),
         no_steps: Bits<16> = from_u64(0),
         no_change: Bits<32> = from_u64(0),
         one_up: Bits<32> = from_u64(1),
@@ -44,6 +47,11 @@ kernel! {
     connect {
         interpolation: tick, position, stands;
     }
+}
+
+/// The bits that the owed steps need, their sign included: one more than the limit, either way.
+fn used_owed(config: &StepGeneratorConfig) -> u64 {
+    2 * (u64::from(config.owed_limit()) + 2).next_power_of_two() - 1
 }
 
 impl<const A: usize, const B: usize> Logic for StepGenerator<A, B> {
@@ -74,7 +82,11 @@ impl<const A: usize, const B: usize> Logic for StepGenerator<A, B> {
 
         comment!("Steps owed: those demanded less those given");
         self.pulser.wanted.next = self.active_q.q.val() & self.enable.val() & self.owed_q.q.val().any();
-        self.pulser.wants_up.next = !self.owed_q.q.val().get_bit(15);
+        self.owed_all.next = self.owed_q.q.val();
+        if (self.owed_q.q.val() & self.owed_sign.val()).any() {
+            self.owed_all.next = self.owed_q.q.val() | self.unused_owed.val();
+        }
+        self.pulser.wants_up.next = !self.owed_all.val().get_bit(15);
         self.gives_up.next = self.pulser.gives.val() & self.pulser.up.val();
         self.gives_down.next = self.pulser.gives.val() & !self.pulser.up.val();
         self.demanded.next = self.none.val();
@@ -93,7 +105,7 @@ impl<const A: usize, const B: usize> Logic for StepGenerator<A, B> {
         }
         self.balance.next = self.demanded.val() + self.given.val();
         self.more.next = signed_bit_cast::<16, 3>(signed_cast(self.balance.val()));
-        self.next_owed.next = self.owed_q.q.val() + unsigned_cast(self.more.val());
+        self.next_owed.next = (self.owed_q.q.val() + unsigned_cast(self.more.val())) & self.used_owed.val();
         self.owed_q.d.next = self.no_steps.val();
         if self.interpolation.keeps.val() {
             self.owed_q.d.next = self.next_owed.val();
@@ -125,7 +137,7 @@ impl<const A: usize, const B: usize> Logic for StepGenerator<A, B> {
         self.a.next = self.a_line.q.val() ^ self.a_off.val();
         self.b.next = self.b_line.q.val() ^ self.b_off.val();
         self.count.next = signed_cast(self.count_q.q.val());
-        self.owed.next = signed_cast(self.owed_q.q.val());
+        self.owed.next = signed_cast(self.owed_all.val());
         self.active.next = self.active_q.q.val();
         self.too_fast.next = self.too_fast_q.q.val();
         self.owed_exceeded.next = self.owed_exceeded_q.q.val();

@@ -51,7 +51,7 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
     areas: || {
         let row = |size, mode| -> Result<AreaRow, Error> {
             let config = StepGeneratorConfig::new(5000, FRACTION_BITS, mode, FAST, 100).map_err(refused)?;
-            Ok(AreaRow::new(size, emit(&config, "")?).budget(300, 300))
+            Ok(AreaRow::new(size, emit(&config, "")?).budget(300, 200))
         };
         Ok(vec![
             row("step and direction, 5000 clocks per tick", StepMode::StepDirection)?,

@@ -47,7 +47,7 @@ pub(super) fn all() -> Result<Vec<Trial>, Error> {
 }
 
 pub(super) const MUTANTS: &[BlockMutant] = &[
-    BlockMutant::new("a reversal that forgets to turn the sum", "from = ~sum", "from = sum"),
+    BlockMutant::new("a reversal that forgets to turn the sum", "passed ^ turns", "passed"),
     BlockMutant::new("a pulse a clock too short", "PULSE = 16'd3", "PULSE = 16'd2"),
     BlockMutant::new(
         "a step that is given without being taken off",
