@@ -2,7 +2,7 @@
 
 use posicast_blocks::step_generator::{
     Inputs, LATENCY_CLOCKS, Outputs, StepGenerator, StepGeneratorConfig, StepGeneratorConfigError, StepMode, StepTimes,
-    StepTimesInSeconds,
+    StepTimesInSeconds, ideal_steps,
 };
 use proptest::prelude::*;
 
@@ -112,9 +112,16 @@ fn every_edge_is_at_its_ideal_time_within_a_clock() {
         let mut seen = steps.into_iter().skip(1);
         for (at, pair) in positions.windows(2).enumerate().skip(2) {
             let [from, to] = [pair[0], pair[1]].map(i128::from);
+            let mut ideal = ideal_steps(&config, pair[0].into(), pair[1].into());
             for step in rounded(from, 8)..rounded(to, 8) {
                 // The line comes to step + 1/2 after (step + 1/2 − from) · T / (to − from) clocks of this tick.
                 let (dividend, divisor) = (((2 * step + 1) * 256 - 2 * from) * 997, 2 * (to - from));
+                let stated = ideal.next().unwrap();
+                assert!(stated.up);
+                assert_eq!(
+                    i128::from(stated.dividend) * divisor,
+                    dividend * i128::from(stated.divisor)
+                );
                 let (clock, sign) = seen.next().unwrap();
                 let since = i128::from(clock) - (at as i128 + 1) * 997 - i128::from(LATENCY_CLOCKS);
                 assert_eq!(sign, 1);
@@ -123,7 +130,52 @@ fn every_edge_is_at_its_ideal_time_within_a_clock() {
                     (0..divisor).contains(&late),
                     "{mode:?}, tick {at}: {late} of {divisor} of a clock"
                 );
+                assert_eq!(since, i128::from(stated.demanded_clocks()));
             }
+            assert_eq!(ideal.next(), None, "{mode:?}, tick {at}");
+        }
+    }
+}
+
+#[test]
+fn two_million_steps_per_second_at_50_mhz() {
+    let times = StepTimes {
+        pulse_clocks: 12,
+        space_clocks: 13,
+        direction_setup_clocks: 250,
+        direction_hold_clocks: 25,
+    };
+    for mode in [StepMode::StepDirection, StepMode::UpDown, StepMode::Quadrature] {
+        let config = StepGeneratorConfig::new(5000, 8, mode, times, 100).unwrap();
+        assert_eq!(config.largest_difference(), 200 * 256);
+        // From rest to the largest rate at once, 200 steps per tick for 40 ticks. The first direction may have to be set.
+        let positions: Vec<i32> = [0, 256, 256]
+            .into_iter()
+            .chain((1..=40).map(|at| 256 + at * 200 * 256))
+            .collect();
+        let (steps, read) = run(&config, &positions, 6000);
+        assert_eq!(read, 1 + 40 * 200);
+        assert!(steps.iter().all(|(_, sign)| *sign == 1));
+        let fast: Vec<u64> = steps[1..].iter().map(|(clock, _)| *clock).collect();
+        assert!(fast.windows(2).all(|pair| pair[1] - pair[0] == 25), "{mode:?}");
+        assert_eq!(fast[fast.len() - 1] - fast[0], (fast.len() as u64 - 1) * 25);
+    }
+}
+
+#[test]
+fn a_line_downwards_passes_each_middle_at_the_stated_time() {
+    let config = config(997, 8, StepMode::StepDirection);
+    for (from, to) in [(640_i64, -640_i64), (129, 128), (128, 127), (-1000, -30_000), (5, 5)] {
+        let stated: Vec<_> = ideal_steps(&config, from, to).collect();
+        let middles: Vec<i128> = (rounded(to.into(), 8)..rounded(from.into(), 8)).rev().collect();
+        assert_eq!(stated.len(), middles.len(), "{from} to {to}");
+        for (step, middle) in stated.iter().zip(middles) {
+            // The line falls below middle + 1/2.
+            let [from, to] = [from, to].map(i128::from);
+            let (dividend, divisor) = ((2 * from - (2 * middle + 1) * 256) * 997, 2 * (from - to));
+            assert!(!step.up);
+            assert_eq!(i128::from(step.dividend) * divisor, dividend * i128::from(step.divisor));
+            assert_eq!(i128::from(step.demanded_clocks()), dividend.div_euclid(divisor) + 1);
         }
     }
 }
