@@ -10,12 +10,13 @@ use posicast_blocks::pwm::{ActiveLow, BridgeMode, PwmConfig};
 use posicast_blocks::schedule::ScheduleConfig;
 use posicast_blocks::shaper::{ShaperConfig, ShaperMotion};
 use posicast_blocks::sliding_mode::{Law, Settings};
+use posicast_blocks::step_generator::{StepGeneratorConfig, StepLinesActiveLow, StepMode, StepTimes};
 use posicast_blocks::trace::TraceConfig;
 use posicast_hdl::emit::{LIBRARY, Module};
 use posicast_hdl::{
     axis, cascade, component, divider, divider_share, drive_command, encoder_generator, excitation, group,
     linear_scale, pulse_counter, pwm, registers, sample_select, schedule, segments, setting_banks, shaper,
-    sliding_mode, spi_bridge, time_base, trace, uart_bridge,
+    sliding_mode, spi_bridge, step_generator, time_base, trace, uart_bridge,
 };
 use posicast_taps::{Tap, TapTable};
 use std::collections::BTreeMap;
@@ -91,6 +92,24 @@ fn pwm_config(chance: &mut Chance) -> PwmConfig {
     if chance.is() { config.on_time_base() } else { config }
 }
 
+fn step_generator_config(chance: &mut Chance) -> StepGeneratorConfig {
+    let times = StepTimes {
+        pulse_clocks: 12 + chance.below(2),
+        space_clocks: 13,
+        direction_setup_clocks: chance.one_of(&[10, 250]),
+        direction_hold_clocks: 25,
+    };
+    let mode = chance.one_of(&[StepMode::StepDirection, StepMode::UpDown, StepMode::Quadrature]);
+    let tick_clocks = chance.one_of(&[1000, 2500, 5000, 5001]);
+    let low = StepLinesActiveLow {
+        a: chance.is(),
+        b: chance.is(),
+    };
+    StepGeneratorConfig::new(tick_clocks, 7 + chance.below(2) as u32, mode, times, 100)
+        .unwrap()
+        .active_low(low)
+}
+
 /// Returns the Verilog of every block, built with random settings for the machine `prefix`.
 fn machine(prefix: &str, chance: &mut Chance) -> Vec<Vec<Module>> {
     let tick = DividerConfig::new(chance.one_of(&[1000, 2500, 5000, 5001])).unwrap();
@@ -122,6 +141,7 @@ fn machine(prefix: &str, chance: &mut Chance) -> Vec<Vec<Module>> {
         drive_command::emit(prefix),
         linear_scale::emit(prefix),
         encoder_generator::emit(prefix),
+        step_generator::emit(&step_generator_config(chance), prefix),
         excitation::emit(prefix),
         uart_bridge::emit(prefix),
         spi_bridge::emit(prefix),
