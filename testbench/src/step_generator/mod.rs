@@ -1,5 +1,6 @@
 //! The bench of `step_generator`.
 
+mod proofs;
 mod reached;
 pub(crate) mod stimuli;
 mod trials;
@@ -47,7 +48,7 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
         let config = trials::small()?;
         Ok(small(StepGeneratorBlock::new(config, ""), "50 clocks per tick"))
     },
-    proofs: || Ok(Vec::new()),
+    proofs: proofs::all,
     areas: || {
         let row = |size, mode| -> Result<AreaRow, Error> {
             let config = StepGeneratorConfig::new(5000, FRACTION_BITS, mode, FAST, 100).map_err(refused)?;

@@ -200,3 +200,13 @@ fn formal_a_ratio_that_is_cut_instead_of_rounded_is_found() {
         "known_round",
     );
 }
+
+#[test]
+fn formal_a_direction_that_changes_with_the_end_of_a_pulse_is_found() {
+    fails(
+        "step_generator",
+        "may_turn | (!pulsing & (timer == HOLD))",
+        "may_turn | !pulsing",
+        "known_held",
+    );
+}
