@@ -14,7 +14,7 @@ const CHECKSUM_CHARS: usize = 16;
 pub struct BitsLabel {
     /// Name of the machine.
     pub machine: String,
-    /// Name of the board, with `, bare` if it has no wires.
+    /// Name of the board, with `-bare` if it has no wires.
     pub board: String,
     /// Beginning of the checksum of the Verilog, the pins and the versions of the tools.
     pub checksum: String,
