@@ -1,7 +1,7 @@
 //! The straight line from sample to sample: every clock adds the difference of two samples, and a step is demanded where
 //! the sum passes a whole number of units per step M.
 //!
-//! The line is u units above the middle below, 0 ‥ M − 1. `sum` is u going down, and u − M going up, so that its sign alone
+//! The line is u units above the middle below, 0 to M − 1. `sum` is u going down, and u − M going up, so that its sign alone
 //! shows a step. A clock that has passed a middle leaves `sum` beyond, and the next one corrects it by M; so does a new
 //! direction, and both at once cancel out. The correction is a constant that needs only a few bits of control.
 //!
