@@ -45,7 +45,7 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
         Ok(one(StepGeneratorBlock::new(config, &sizes.prefix)))
     },
     small: || {
-        let config = trials::small()?;
+        let config = trials::small(StepMode::StepDirection)?;
         Ok(small(StepGeneratorBlock::new(config, ""), "50 clocks per tick"))
     },
     proofs: proofs::all,

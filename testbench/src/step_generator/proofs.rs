@@ -3,6 +3,7 @@
 use posicast_blocks::step_generator::{StepGeneratorConfig, StepLinesActiveLow, StepMode, StepTimes, ports};
 use posicast_hdl::step_generator::emit;
 
+use super::trials::small;
 use super::{FAST, FRACTION_BITS};
 use crate::Error;
 use crate::formal::{INDUCTION, Task, refused};
@@ -15,19 +16,10 @@ const SHORT: StepTimes = StepTimes {
     direction_hold_clocks: 3,
 };
 
-/// Covers are reached soon at these.
-const FEW: StepTimes = StepTimes {
-    pulse_clocks: 3,
-    space_clocks: 4,
-    direction_setup_clocks: 12,
-    direction_hold_clocks: 8,
-};
-
 pub(super) fn all() -> Result<Vec<Task>, Error> {
     let a_low = StepLinesActiveLow { a: true, b: false };
     let exact = StepGeneratorConfig::new(4, 2, StepMode::StepDirection, SHORT, 2);
     let whole = StepGeneratorConfig::new(5000, FRACTION_BITS, StepMode::StepDirection, FAST, 100);
-    let few = |mode| StepGeneratorConfig::new(50, 4, mode, FEW, 3);
     Ok(vec![
         proof(
             exact.map_err(refused)?,
@@ -40,15 +32,11 @@ pub(super) fn all() -> Result<Vec<Task>, Error> {
             "5000 clocks per tick, step and direction",
         )?,
         proof(
-            few(StepMode::UpDown).map_err(refused)?.active_low(a_low),
+            small(StepMode::UpDown)?.active_low(a_low),
             false,
             "50 clocks per tick, up and down, a active low",
         )?,
-        proof(
-            few(StepMode::Quadrature).map_err(refused)?,
-            false,
-            "50 clocks per tick, quadrature",
-        )?,
+        proof(small(StepMode::Quadrature)?, false, "50 clocks per tick, quadrature")?,
     ])
 }
 
