@@ -42,7 +42,9 @@ const HEALTHY: [&str; 5] = [
 /// Lines of the stage that are high in normal operation.
 const HEALTHY_SHARED: [&str; 2] = ["emergency_stop_n", "pll_locked"];
 /// Nets of each axis, without the axis's name, that are recorded in a tick.
-const RECORDED: [&str; 4] = ["command_position", "shaped_position", "count", "error"];
+const RECORDED: [&str; 3] = ["command_position", "shaped_position", "count"];
+/// The error of a controller, which an axis with steps does not have.
+const ERROR: &str = "error";
 
 /// States of an axis, as values of `STATUS.state`.
 pub mod state {
@@ -71,7 +73,7 @@ pub struct AxisSample {
     pub shaped: f64,
     /// Count of the encoder.
     pub count: f64,
-    /// Error of the controller in counts.
+    /// Error of the controller in counts; with steps, the distance of the count from the shaped position.
     pub error: f64,
     /// Position of the motor in m or rad.
     pub motor: f64,
@@ -81,11 +83,14 @@ pub struct AxisSample {
 
 /// Indices of an axis's pins among the stage's ports.
 struct Places {
-    encoder: [usize; 3],
+    /// Lines A, B and index of the encoder, as far as the axis has them.
+    encoder: [Option<usize>; 3],
     /// Lines A and B of the scale.
     scale: Option<[usize; 2]>,
-    drive: [usize; 6],
-    recorded: [usize; 4],
+    /// Pins in the order of [`DrivePins`], as far as the axis has them.
+    drive: [Option<usize>; 6],
+    recorded: [usize; 3],
+    error: Option<usize>,
 }
 
 /// Faults between an axis of the machine and the stage.
@@ -94,6 +99,7 @@ struct Fault {
     encoder: Option<EncoderPins>,
     wire: Option<Wire>,
     scale: Option<EncoderPins>,
+    lines: Option<StepWire>,
     jammed: bool,
 }
 
@@ -106,6 +112,27 @@ pub enum Wire {
     BStuck(bool),
     /// The two wires of the pair A are exchanged: the encoder counts in the other direction.
     AInverted,
+}
+
+/// A fault of one line between the stage and a drive with step inputs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StepWire {
+    /// The drive sees no step: its first line is low.
+    Cut,
+    /// The drive sees the second line, the direction, inverted.
+    Reversed,
+}
+
+impl StepWire {
+    fn apply(self, pins: DrivePins) -> DrivePins {
+        match self {
+            Self::Cut => DrivePins { a_high: false, ..pins },
+            Self::Reversed => DrivePins {
+                b_high: !pins.b_high,
+                ..pins
+            },
+        }
+    }
 }
 
 impl Wire {
@@ -201,21 +228,40 @@ impl StageBench {
             found.ok_or_else(|| Error::Unlike(format!("the stage has no port `{name}`")))
         };
         let mut places = Vec::new();
-        for axis in &axes {
-            let [a, b, z] = ["a", "b", "z"].map(|pin| place(&input_names, &format!("{axis}_{pin}")));
-            let scale = ["scale_a", "scale_b"].map(|pin| place(&input_names, &format!("{axis}_{pin}")).ok());
-            let drive = ["a_high", "a_low", "b_high", "b_low", "drive_enable", "brake_release"];
-            let [d0, d1, d2, d3, d4, d5] = drive.map(|pin| place(&output_names, &format!("{axis}_{pin}")));
+        for (axis, built) in axes.iter().zip(&config.axes) {
+            let input = |pin: &str| place(&input_names, &format!("{axis}_{pin}")).ok();
+            let scale = ["scale_a", "scale_b"].map(input);
+            let [first, first_low, second, second_low] = match built.steps() {
+                None => ["a_high", "a_low", "b_high", "b_low"].map(Some),
+                Some(steps) => {
+                    let [first, second] = steps.mode().line_names().map(Some);
+                    [first, None, second, None]
+                }
+            };
+            let drive = [
+                first,
+                first_low,
+                second,
+                second_low,
+                Some("drive_enable"),
+                Some("brake_release"),
+            ];
+            let mut pins = [None; 6];
+            for (pin, name) in pins.iter_mut().zip(drive) {
+                let found = name.map(|name| place(&output_names, &format!("{axis}_{name}")));
+                *pin = found.transpose()?;
+            }
             let net = |name: &str| {
                 let found = model.net(&format!("{axis}_{name}"));
                 found.ok_or_else(|| Error::Unlike(format!("the stage has no net `{axis}_{name}`")))
             };
-            let [n0, n1, n2, n3] = RECORDED.map(net);
+            let [n0, n1, n2] = RECORDED.map(net);
             places.push(Places {
-                encoder: [a?, b?, z?],
+                encoder: ["a", "b", "z"].map(input),
                 scale: scale[0].zip(scale[1]).map(<[usize; 2]>::from),
-                drive: [d0?, d1?, d2?, d3?, d4?, d5?],
-                recorded: [n0?, n1?, n2?, n3?],
+                drive: pins,
+                recorded: [n0?, n1?, n2?],
+                error: net(ERROR).ok(),
             });
         }
         let mut bench = Self {
@@ -237,13 +283,15 @@ impl StageBench {
             now: 0,
             samples: None,
         };
-        for line in HEALTHY_SHARED {
+        // An axis with steps has fewer lines, and a stage of such axes no `pll_locked`.
+        let lines = bench
+            .axes
+            .iter()
+            .flat_map(|axis| HEALTHY.map(|line| format!("{axis}_{line}")));
+        let mut healthy: Vec<String> = HEALTHY_SHARED.map(str::to_owned).into_iter().chain(lines).collect();
+        healthy.retain(|line| bench.input_names.contains(line));
+        for line in &healthy {
             bench.set(line, 1)?;
-        }
-        for axis in bench.axes.clone() {
-            for line in HEALTHY {
-                bench.set(&format!("{axis}_{line}"), 1)?;
-            }
         }
         bench.reset(2)?;
         Ok(bench)
@@ -291,6 +339,11 @@ impl StageBench {
     /// Forces the lines A and B of an axis's scale, as [`force_encoder`](Self::force_encoder) does for the encoder.
     pub fn force_scale(&mut self, axis: usize, pins: Option<EncoderPins>) {
         self.faults[axis].scale = pins;
+    }
+
+    /// Breaks a line between the stage and the drive of an axis with steps; `None` repairs it.
+    pub fn break_step_wire(&mut self, axis: usize, wire: Option<StepWire>) {
+        self.faults[axis].lines = wire;
     }
 
     /// Jams an axis, or frees it: its plant stands as if its brake were applied.
@@ -395,7 +448,9 @@ impl StageBench {
                 let lines = fault.wire.map_or(plant.encoder(), |wire| wire.apply(plant.encoder()));
                 let pins = fault.encoder.unwrap_or(lines);
                 for (place, level) in places.encoder.into_iter().zip([pins.a, pins.b, pins.z]) {
-                    self.inputs[place] = level.into();
+                    if let Some(place) = place {
+                        self.inputs[place] = level.into();
+                    }
                 }
                 if let Some([a, b]) = places.scale {
                     let pins = fault.scale.unwrap_or_else(|| plant.scale());
@@ -420,8 +475,9 @@ impl StageBench {
                 self.sample();
             }
             for (axis, (plant, places)) in self.plants.iter_mut().zip(&self.places).enumerate() {
-                let [a_high, a_low, b_high, b_low, drive_enable, brake_release] =
-                    places.drive.map(|place| self.outputs[place] != 0);
+                let [a_high, a_low, b_high, b_low, drive_enable, brake_release] = places
+                    .drive
+                    .map(|place| place.is_some_and(|place| self.outputs[place] != 0));
                 let pins = DrivePins {
                     a_high,
                     a_low,
@@ -431,9 +487,10 @@ impl StageBench {
                     brake_release,
                 };
                 self.shown[axis] = pins;
-                self.watched[axis].pass(&pins, passed);
                 let brake_release = brake_release && !self.faults[axis].jammed;
-                plant.clocks(DrivePins { brake_release, ..pins }, passed);
+                let seen = DrivePins { brake_release, ..pins };
+                plant.clocks(self.faults[axis].lines.map_or(seen, |wire| wire.apply(seen)), passed);
+                self.watched[axis].pass(&pins, passed, plant);
             }
             self.now += passed;
         }
@@ -446,17 +503,25 @@ impl StageBench {
         };
         for ((list, places), plant) in samples.iter_mut().zip(&self.places).zip(&self.plants) {
             let signed = |net: usize| f64::from(self.model.value(net) as u32 as i32);
-            let [command, shaped, count, error] = places.recorded.map(signed);
+            let [command, shaped, count] = places.recorded.map(signed);
+            let error = places
+                .error
+                .map_or(shaped / 256.0 - count, |net| signed(net) / 65_536.0);
             let motion = plant.motion();
             list.push(AxisSample {
                 command: command / 256.0,
                 shaped: shaped / 256.0,
                 count,
-                error: error / 65_536.0,
+                error,
                 motor: motion.position,
                 load: motion.load,
             });
         }
+    }
+
+    /// Whether the stage has a register of this name.
+    pub fn has(&self, register: &str) -> bool {
+        self.component.map().register(register).is_some()
     }
 
     /// Address of a register on the bus.

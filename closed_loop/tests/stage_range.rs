@@ -31,7 +31,7 @@ impl Bed {
         let mut config = stage(&machine(XY)).config;
         config.axes.truncate(1);
         let axis = &mut config.axes[0];
-        axis.encoder_filter_clocks = 0;
+        axis.closed_loop_mut().unwrap().encoder_filter_clocks = 0;
         (axis.supervision.lost_ticks, axis.supervision.saturation_ticks) = (0, 0);
         let component = Component::stage(&config).unwrap();
         let model = component.model(1);

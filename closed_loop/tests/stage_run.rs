@@ -120,11 +120,11 @@ fn wild_wrist(text: &str, factor: f64) -> (Moved, Vec<Expected>) {
     let machine = machine(text);
     let stage = stage(&machine);
     let mut config = stage.config.clone();
-    let mut gains = stage.derived[0].gains;
+    let mut gains = stage.loops[0].as_ref().unwrap().derived.gains;
     for row in [SettingRow::Derivative, SettingRow::Proportional, SettingRow::Integral] {
         gains.set(row, factor * gains.get(row));
     }
-    config.axes[0].settings = gains.quantise().unwrap();
+    config.axes[0].closed_loop_mut().unwrap().settings = gains.quantise().unwrap();
     let short = AxisMove {
         distance: 0.005,
         velocity: 3.0,

@@ -6,8 +6,8 @@
 use crate::emit::{EmitError, Header, Module, add, connect};
 use crate::{
     axis, divider, divider_share, drive_command, encoder_generator, error_table, excitation, group, linear_scale,
-    pulse_counter, pwm, registers, sample_select, schedule, segments, setting_banks, shaper, sliding_mode, time_base,
-    trace,
+    pulse_counter, pwm, registers, sample_select, schedule, segments, setting_banks, shaper, sliding_mode,
+    step_generator, time_base, trace,
 };
 use posicast_blocks::component::{Component, ComponentPart, JoinedBlocks};
 
@@ -52,6 +52,7 @@ fn block(block: &ComponentPart, top: &str, prefix: &str) -> Result<Vec<Module>, 
         ComponentPart::Shaper(config) => shaper::emit(config, prefix),
         ComponentPart::SampleSelect { word_bits, channels } => sample_select::emit(*word_bits, *channels, prefix),
         ComponentPart::Pwm(config) => pwm::emit(config, prefix),
+        ComponentPart::StepGenerator(config) => step_generator::emit(config, prefix),
         ComponentPart::SlidingMode => sliding_mode::emit(prefix),
         ComponentPart::SettingBanks(machine) => setting_banks::emit(machine, prefix),
         ComponentPart::PulseCounter => pulse_counter::emit(prefix),

@@ -45,7 +45,7 @@ pub struct AxisStatus {
     pub command: f64,
     /// Command after the shaper.
     pub shaped: f64,
-    /// Difference of command and position.
+    /// Difference of command and position; with steps, those that are owed.
     pub error: f64,
     /// Entries that wait.
     pub waiting: u32,
@@ -196,21 +196,22 @@ impl<'m, L: Read + Write> HostedStage<'m, L> {
     /// # Errors
     /// [`HostError`]
     pub fn status(&mut self) -> Result<Vec<AxisStatus>, HostError> {
-        const WORDS: [&str; 8] = [
+        const WORDS: [&str; 7] = [
             "status",
             "causes",
             "position",
             "velocity",
             "command_position",
             "shaped_position",
-            "error",
             "fifo",
         ];
         let mut all = Vec::new();
         for (axis, section) in self.machine.axes.iter().enumerate() {
-            let names = WORDS.map(|word| self.of(axis, word));
+            let with_steps = section.steps.is_some();
+            let behind = if with_steps { "owed_steps" } else { "error" };
+            let names: Vec<String> = WORDS.iter().chain([&behind]).map(|word| self.of(axis, word)).collect();
             let words = self.read(&names)?;
-            let [status, causes, position, velocity, command, shaped, error, fifo] = words[..] else {
+            let [status, causes, position, velocity, command, shaped, fifo, behind] = words[..] else {
                 continue;
             };
             let of_status = |stage: &Self, field| Ok::<u32, HostError>(stage.field(axis, "status", field)?.of(status));
@@ -225,7 +226,11 @@ impl<'m, L: Read + Write> HostedStage<'m, L> {
                 velocity: signed(velocity, 16),
                 command: signed(command, 8),
                 shaped: signed(shaped, 8),
-                error: signed(error, 16),
+                error: if with_steps {
+                    f64::from(behind as u16 as i16)
+                } else {
+                    signed(behind, 16)
+                },
                 waiting: self.field(axis, "fifo", "fifo_level")?.of(fifo),
                 table_bank: of_status(self, "table_bank")?,
             });

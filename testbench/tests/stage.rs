@@ -66,9 +66,9 @@ fn quick(axes: usize) -> StageConfig {
             .for_motion(motion)
             .unwrap();
         axis.shaper = axis.shaper.with_room_for(62, 4).unwrap();
-        axis.pwm = PwmConfig::new(ActiveLow::default(), 2, 3).unwrap();
-        axis.pwm_mode = mode;
-        axis.pwm_period_clocks = PERIOD_CLOCKS;
+        axis.closed_loop_mut().unwrap().pwm = PwmConfig::new(ActiveLow::default(), 2, 3).unwrap();
+        axis.closed_loop_mut().unwrap().pwm_mode = mode;
+        axis.closed_loop_mut().unwrap().pwm_period_clocks = PERIOD_CLOCKS;
         axis.modulo = name == "phi";
         // Of four axes, the third is supervised by a scale of 2.5 counts per count of the motor; the fourth runs on
         // one.
@@ -77,10 +77,10 @@ fn quick(axes: usize) -> StageConfig {
             closes_loop: name == "phi",
             invert: false,
         });
-        axis.encoder_filter_clocks = 2;
-        axis.settings
-            .set_gain(SettingRow::Duty, Gain::nearest(0.02, SettingRow::Duty).unwrap());
-        axis.settings.set_limit(2000 << 12);
+        axis.closed_loop_mut().unwrap().encoder_filter_clocks = 2;
+        let settings = &mut axis.closed_loop_mut().unwrap().settings;
+        settings.set_gain(SettingRow::Duty, Gain::nearest(0.02, SettingRow::Duty).unwrap());
+        settings.set_limit(2000 << 12);
         let watched = &mut axis.supervision;
         (
             watched.filter_clocks,

@@ -9,7 +9,8 @@ const GATES_FOLLOW_CLOCKS: u64 = 1;
 /// Observations of an axis since its bench began.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Watched {
-    /// Number of clocks with a gate on, more than one clock after the drive was disabled. Must be 0.
+    /// Number of clocks with a gate on, more than one clock after the drive was disabled; with steps, the number of steps
+    /// while it was disabled. Must be 0.
     pub gates_while_disabled: u64,
     /// Number of clocks with the brake released and the drive disabled. Must be 0.
     pub released_while_disabled: u64,
@@ -28,8 +29,11 @@ impl Watched {
         self.largest_count_error = self.largest_count_error.max(off_by);
     }
 
-    /// Records this many clocks with these pins.
-    pub(super) fn pass(&mut self, pins: &DrivePins, passed: u64) {
+    /// Records this many clocks with these pins, after which the plant is as it is now.
+    pub(super) fn pass(&mut self, pins: &DrivePins, passed: u64, plant: &AxisPlant) {
+        if plant.has_steps() {
+            self.gates_while_disabled = plant.ignored_steps();
+        }
         if pins.drive_enable {
             self.disabled_clocks = 0;
             return;
@@ -39,7 +43,7 @@ impl Watched {
         if pins.brake_release {
             self.released_while_disabled += passed;
         }
-        if pins.a_high || pins.a_low || pins.b_high || pins.b_low {
+        if !plant.has_steps() && (pins.a_high || pins.a_low || pins.b_high || pins.b_low) {
             let late = |clocks: u64| clocks.saturating_sub(GATES_FOLLOW_CLOCKS);
             self.gates_while_disabled += late(self.disabled_clocks) - late(before);
         }
@@ -73,10 +77,10 @@ mod tests {
             ..DrivePins::default()
         };
         watched.look(0, &plant);
-        watched.pass(&pins, 1);
+        watched.pass(&pins, 1, &plant);
         assert_eq!(watched.gates_while_disabled, 0);
         watched.look(u64::from(-2_i32 as u32), &plant);
-        watched.pass(&pins, 3);
+        watched.pass(&pins, 3, &plant);
         assert_eq!((watched.gates_while_disabled, watched.largest_count_error), (3, 2));
         watched.pass(
             &DrivePins {
@@ -84,6 +88,7 @@ mod tests {
                 ..pins
             },
             2,
+            &plant,
         );
         assert_eq!((watched.gates_while_disabled, watched.released_while_disabled), (5, 2));
     }

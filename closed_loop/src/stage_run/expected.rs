@@ -5,14 +5,14 @@
 use posicast_blocks::segments::{Entry, Integrator};
 use posicast_machine::control::Derived;
 use posicast_machine::control::sampled::{FollowLimits, SampledLoop};
-use posicast_machine::hardware;
+use posicast_machine::hardware::{self, TimedLoop};
 use posicast_machine::machine_file::{AxisSection, DriveMode, FamilySection, Machine, PwmMode};
 use posicast_machine::plan::{TableFamily, design_machine};
 use posicast_taps::TapTable;
 
 use super::figures::{self, AxisFigures};
-use super::moves;
 use super::{Shaping, StageRun, StageRunError};
+use super::{moves, stepped};
 use crate::stage_bench::AxisSample;
 
 /// The stage may differ by this fraction of an expected figure, because of the drive's limits, the clocks of the
@@ -93,10 +93,9 @@ pub(super) fn of_move(
     };
     let ticks = moves::settle_ticks(run);
     let axes = machine.axes.iter().enumerate().zip(&design.axes);
-    let loops = stage.derived.iter().zip(&stage.lags_s);
     let moves = run.moves.iter().zip(&run.harsh);
     let mut expectations = Vec::new();
-    for ((((index, axis), tables), (derived, lag_s)), (of, harsh)) in axes.zip(loops).zip(moves) {
+    for ((((index, axis), tables), timed), (of, harsh)) in axes.zip(&stage.loops).zip(moves) {
         let planned = moves::plan_axis(machine, axis, of, *harsh, 0)?;
         let commands = commands(&planned, ticks);
         // For a mode that moves with the position, the end of the move determines mode and table.
@@ -114,11 +113,19 @@ pub(super) fn of_move(
             Shaping::Unshaped => TapTable::bypass(table.coefficient_fraction())
                 .map_err(|error| StageRunError::Design(Box::new(error)))?,
         };
-        let sampled = SampledLoop::new(at_end.as_ref().unwrap_or(axis), machine.clock, *lag_s, frequency_factor);
-        let sampled = sampled.unwrap_or_else(|| derived.sampled.clone());
-        let mut expected = expected(machine, axis, derived, &sampled, &table, &commands, planned.1);
-        expected.handover = handover;
-        expectations.push(expected);
+        let at_end = at_end.as_ref().unwrap_or(axis);
+        let expected = match timed {
+            None => {
+                let references = shaped(&commands, &table, scales(axis, machine.clock.sample_hz));
+                stepped::expected(at_end, machine.clock.sample_hz, &references, frequency_factor)?
+            }
+            Some(TimedLoop { derived, lag_s }) => {
+                let sampled = SampledLoop::new(at_end, machine.clock, *lag_s, frequency_factor);
+                let sampled = sampled.unwrap_or_else(|| derived.sampled.clone());
+                expected(machine, axis, derived, &sampled, &table, &commands, planned.1)
+            }
+        };
+        expectations.push(Expected { handover, ..expected });
     }
     Ok(expectations)
 }

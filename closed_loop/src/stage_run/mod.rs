@@ -20,6 +20,7 @@ mod figures;
 mod host;
 mod moves;
 mod shaping;
+mod stepped;
 mod tables;
 
 use posicast_blocks::component::Component;

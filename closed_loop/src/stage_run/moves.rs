@@ -31,6 +31,8 @@ pub struct Moved {
     pub samples: Vec<Vec<AxisSample>>,
     /// Number of handovers between tap tables, for axes whose modes move with their position.
     pub handovers: u64,
+    /// Of each axis with steps, those that its motor lost, and those that came while its drive was off; 0 on other axes.
+    pub lost_steps: Vec<u64>,
     /// Set if the stage did not do what it should.
     pub trouble: Option<Trouble>,
 }
@@ -164,6 +166,10 @@ pub(super) fn measure(run: &StageRun<'_>, mut host: Host<'_>, shaping: Shaping) 
             .map(|(samples, axis)| figures::of_move(samples, axis.loop_counts_per_unit()))
             .collect(),
         handovers: host.handovers,
+        lost_steps: (0..run.machine.axes.len())
+            .map(|axis| host.bench.plant(axis))
+            .map(|plant| plant.lost_steps().unsigned_abs() + plant.ignored_steps())
+            .collect(),
         samples,
         trouble,
     })

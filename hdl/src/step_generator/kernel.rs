@@ -141,5 +141,6 @@ impl<const A: usize, const B: usize> Logic for StepGenerator<A, B> {
         self.active.next = self.active_q.q.val();
         self.too_fast.next = self.too_fast_q.q.val();
         self.owed_exceeded.next = self.owed_exceeded_q.q.val();
+        self.tripped.next = self.too_fast_q.q.val() | self.owed_exceeded_q.q.val();
     }
 }

@@ -12,7 +12,7 @@ use crate::compiled::{self, Compiled};
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::StepGenerator;
-use posicast_blocks::step_generator::{LATENCY_CLOCKS, PORTS, StepGeneratorConfig, StepMode, ports};
+use posicast_blocks::step_generator::{LATENCY_CLOCKS, PORTS, StepGeneratorConfig, ports};
 use posicast_blocks::{ClockedBlock, port_notes};
 
 /// The step generator with an accumulator of A bits.
@@ -59,14 +59,6 @@ pub fn name(config: &StepGeneratorConfig, prefix: &str) -> String {
     emit::shared_name(prefix, &base_name(config))
 }
 
-fn mode_name(mode: StepMode) -> &'static str {
-    match mode {
-        StepMode::StepDirection => "step_direction",
-        StepMode::UpDown => "up_down",
-        StepMode::Quadrature => "quadrature",
-    }
-}
-
 fn base_name(config: &StepGeneratorConfig) -> String {
     let times = config.times();
     let low = config.lines_active_low();
@@ -79,7 +71,7 @@ fn base_name(config: &StepGeneratorConfig) -> String {
         times.space_clocks,
         times.direction_setup_clocks,
         times.direction_hold_clocks,
-        mode_name(config.mode()),
+        config.mode().name(),
         polarity[0],
         polarity[1],
         config.owed_limit(),
@@ -124,7 +116,7 @@ fn parameters(config: &StepGeneratorConfig) -> Vec<Parameter> {
     vec![
         parameter("tick_clocks", config.tick_clocks().to_string(), "from tick to tick"),
         parameter("fraction_bits", config.fraction_bits().to_string(), "of position"),
-        parameter("mode", mode_name(config.mode()).to_owned(), "what the lines show"),
+        parameter("mode", config.mode().name().to_owned(), "what the lines show"),
         parameter("active low lines", low.to_owned(), "off at high"),
         parameter("pulse_clocks", times.pulse_clocks.to_string(), "at least"),
         parameter(
@@ -155,7 +147,7 @@ fn parameters(config: &StepGeneratorConfig) -> Vec<Parameter> {
 mod tests {
     use super::*;
     use crate::emit::emit as emit_directly;
-    use posicast_blocks::step_generator::StepTimes;
+    use posicast_blocks::step_generator::{StepMode, StepTimes};
 
     #[test]
     fn a_step_generator_comes_out_as_if_its_size_were_compiled() {

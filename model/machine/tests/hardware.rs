@@ -19,13 +19,13 @@ fn an_axis_has_the_gains_and_the_lag_of_its_stage() {
     assert_eq!(hardware.axes().len(), 2);
     for (index, axis) in hardware.axes().iter().enumerate() {
         let control = axis.control.as_ref().unwrap();
-        assert_eq!(control.lag_s, stage.of_machine.lags_s[index]);
-        assert_eq!(control.derived.settings, stage.of_machine.config.axes[index].settings);
+        assert_eq!(control.lag_s, stage.of_machine.loops[index].as_ref().unwrap().lag_s);
+        let built = stage.of_machine.config.axes[index].closed_loop().unwrap();
+        assert_eq!(control.derived.settings, built.settings);
     }
     let components = hardware.components().unwrap();
-    let settings = &stage.of_machine.config.axes[1].settings;
-    let law = stage.of_machine.config.axes[1].law;
-    let controller = Component::sliding_mode(settings, law, machine.axes[1].modulo).unwrap();
+    let built = stage.of_machine.config.axes[1].closed_loop().unwrap();
+    let controller = Component::sliding_mode(&built.settings, built.law, machine.axes[1].modulo).unwrap();
     assert_eq!(
         components.iter().map(|one| one.axis).collect::<Vec<_>>(),
         [0, 0, 0, 0, 1, 1, 1, 1]

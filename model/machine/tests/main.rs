@@ -25,6 +25,7 @@ mod shaper_handover;
 mod sliding_mode;
 mod smooth;
 mod stage;
+mod steps;
 mod stiction;
 mod supervision;
 mod support;

@@ -31,6 +31,8 @@ pub(super) fn axis(shaper: ShaperChoice, modes: &[Mode]) -> AxisSection {
         scale: None,
         error_table: None,
         trace: None,
+        steps: None,
+        stepper: None,
     }
 }
 

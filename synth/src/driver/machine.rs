@@ -80,8 +80,8 @@ fn write_axis(text: &mut String, axis: &StageAxis, data: &AxisData) {
         jerk = lsb(limits.jerk, ACCELERATION_BITS),
         taps = axis.shaper.table().taps().len(),
         fraction = axis.shaper.coefficient_fraction(),
-        law = axis.law as u32,
-        words = words(&axis.settings),
+        law = axis.closed_loop().map_or(0, |of| of.law as u32),
+        words = words(&axis.closed_loop().map_or_else(Settings::default, |of| of.settings)),
     );
 }
 

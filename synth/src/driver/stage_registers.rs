@@ -14,7 +14,7 @@ use posicast_blocks::segments::{
     POSITION_FRACTION, SegmentsState, TICK_BITS, VELOCITY_BITS, VELOCITY_FRACTION,
 };
 use posicast_blocks::sliding_mode::{MANTISSA_BITS, SETTINGS, SHIFT_MAX, SettingRow};
-use posicast_blocks::stage::AXIS_INTERRUPTS;
+use posicast_blocks::stage::{AXIS_INTERRUPTS, StageAxis};
 use std::fmt::Write;
 
 const STAGE: &str = "POSICAST_STAGE";
@@ -41,6 +41,7 @@ pub(super) fn header(driver: &StageDriver<'_>) -> String {
     text.push_str("\n#include <stdint.h>\n\n#include \"posicast_io.h\"\n");
     numbers(&mut text, map);
     settings(&mut text);
+    loops(&mut text, driver);
     bring_up(&mut text, driver);
     error_tables(&mut text, driver);
     text.push_str("\n/* ---- Window 0: the stage ---- */\n");
@@ -109,6 +110,25 @@ fn settings(text: &mut String) {
     let _ = writeln!(text, "#define POSICAST_SETTINGS {SETTINGS}u");
     let _ = writeln!(text, "#define POSICAST_GAIN_MANTISSA_BITS {MANTISSA_BITS}u");
     let _ = writeln!(text, "#define POSICAST_GAIN_SHIFT_MAX {SHIFT_MAX}u");
+}
+
+/// Writes which axes have a controller, and which have steps.
+fn loops(text: &mut String, driver: &StageDriver<'_>) {
+    let mask = |of: fn(&StageAxis) -> bool| -> u32 {
+        let axes = driver.config.axes.iter().enumerate();
+        axes.filter(|(_, axis)| of(axis)).map(|(place, _)| 1 << place).sum()
+    };
+    text.push_str("\n/* Masks of the axes with a controller, and of those with steps. */\n");
+    let _ = writeln!(
+        text,
+        "#define POSICAST_LOOP_AXES {:#x}u",
+        mask(|axis| axis.closed_loop().is_some())
+    );
+    let _ = writeln!(
+        text,
+        "#define POSICAST_STEPS_AXES {:#x}u",
+        mask(|axis| axis.steps().is_some())
+    );
 }
 
 /// Writes which axes have the bring-up registers.

@@ -29,7 +29,7 @@ pub(crate) fn all() -> [Whole; 4] {
         ),
         whole(
             "shaper",
-            Component::shaper(axis.shaper).unwrap(),
+            Component::shaper(axis.shaper.clone()).unwrap(),
             &[("control", "from_pins", 1)],
             |name, clock| {
                 let tick = clock / TICK_CLOCKS;
@@ -43,7 +43,7 @@ pub(crate) fn all() -> [Whole; 4] {
         ),
         whole(
             "sliding_mode",
-            Component::sliding_mode(&axis.settings, Law::SlidingMode, false).unwrap(),
+            Component::sliding_mode(&axis.closed_loop().unwrap().settings, Law::SlidingMode, false).unwrap(),
             &[("control", "from_pins", 1)],
             |name, clock| {
                 let tick = clock / TICK_CLOCKS;
@@ -59,7 +59,7 @@ pub(crate) fn all() -> [Whole; 4] {
         ),
         whole(
             "pwm",
-            Component::pwm(axis.pwm, BridgeMode::Unipolar, 2500).unwrap(),
+            Component::pwm(axis.closed_loop().unwrap().pwm, BridgeMode::Unipolar, 2500).unwrap(),
             &[
                 ("clear_trip", "", 0),
                 ("control", "from_pins", 1),

@@ -22,6 +22,7 @@ use crate::registers::RegistersBlock;
 use crate::segments::SegmentsBlock;
 use crate::shaper::ShaperBlock;
 use crate::sliding_mode::SlidingModeBlock;
+use crate::step_generator::StepGeneratorBlock;
 use crate::trace::TraceBlock;
 
 /// Names of blocks: the prefix of the modules whose contents depend on the machine, and the instance in a report.
@@ -102,6 +103,7 @@ fn block_of_part(part: &Part, place: &Place<'_>) -> Result<Option<Box<dyn Block>
         Part::PulseCounter => Box::new(PulseCounterBlock::new(prefix, instance)),
         Part::Divider(config) => Box::new(DividerBlock::new(*config, prefix).called(instance)),
         Part::Pwm(config) => Box::new(PwmBlock::new(*config, prefix, instance)),
+        Part::StepGenerator(config) => Box::new(StepGeneratorBlock::new(*config, prefix).called(instance)),
         Part::SlidingMode => Box::new(SlidingModeBlock::new(prefix, instance)),
         Part::Segments => Box::new(SegmentsBlock::new(prefix, instance)),
         Part::Axis => Box::new(AxisBlock::new(prefix, instance)),

@@ -15,7 +15,7 @@ use posicast_blocks::pwm::{ActiveLow, BridgeMode, PwmConfig};
 use posicast_blocks::shaper::ShaperConfig;
 use posicast_blocks::sliding_mode::{Law, Settings};
 use posicast_blocks::stage::Supervision;
-use posicast_blocks::stage::{StageAxis, StageConfig, StageErrorTable, StageScale};
+use posicast_blocks::stage::{Follower, StageAxis, StageConfig, StageErrorTable, StageLoop, StageScale};
 use posicast_blocks::trace::TraceConfig;
 use posicast_hdl::machine::AxisShaper;
 
@@ -117,14 +117,16 @@ pub(crate) fn stage() -> Result<StageConfig, Error> {
         Ok(StageAxis {
             name: name.to_owned(),
             shaper: shaper([2, 3, 5, 6])?.for_motion(MOTION).map_err(refused)?,
-            settings: Settings::default(),
-            law: Law::SlidingMode,
             modulo: false,
-            pwm: PwmConfig::new(ActiveLow::default(), 2, 3).map_err(refused)?,
-            pwm_mode: BridgeMode::Unipolar,
-            pwm_period_clocks: STAGE_PERIOD_CLOCKS,
-            encoder_filter_clocks: 2,
-            encoder_invert: false,
+            follower: Follower::Loop(Box::new(StageLoop {
+                settings: Settings::default(),
+                law: Law::SlidingMode,
+                pwm: PwmConfig::new(ActiveLow::default(), 2, 3).map_err(refused)?,
+                pwm_mode: BridgeMode::Unipolar,
+                pwm_period_clocks: STAGE_PERIOD_CLOCKS,
+                encoder_filter_clocks: 2,
+                encoder_invert: false,
+            })),
             supervision: SUPERVISION,
             scale: None,
             error_table: None,

@@ -10,7 +10,7 @@ use posicast_hdl::{divider_share, group, sample_select, schedule, setting_banks,
 
 use crate::Error;
 use crate::formal::{Engine, INDUCTION, Task, refused};
-use crate::stage::example;
+use crate::stage::example_settings;
 
 pub(crate) fn group(axes: usize) -> Result<Task, Error> {
     let list = |name: &str| {
@@ -101,9 +101,7 @@ pub(crate) fn sample_select(channels: usize) -> Result<Task, Error> {
 }
 
 pub(crate) fn setting_banks() -> Result<Task, Error> {
-    let stage = example("")?;
-    let axis = stage.axes.first().ok_or_else(|| refused("the example has no axis"))?;
-    let block = (setting_banks::emit(&axis.settings, "")?, banks_model::ports());
+    let block = (setting_banks::emit(&example_settings()?, "")?, banks_model::ports());
     Ok(
         Task::new("setting_banks", "32 rows, contents left out", Engine::Pdr, block)
             .properties(&[], include_str!("setting_banks.sv")),

@@ -7,7 +7,7 @@ use posicast_hdl::{component, sliding_mode};
 
 use crate::Error;
 use crate::formal::{INDUCTION, Task, part, refused};
-use crate::stage::example;
+use crate::stage::example_settings;
 use crate::stage::proofs::empty;
 
 /// Returns all proofs of the block.
@@ -88,7 +88,5 @@ pub(crate) fn law_and_bank() -> Result<Task, Error> {
 
 /// The controller's component of the example's first axis.
 pub(crate) fn controller() -> Result<Component, Error> {
-    let stage = example("")?;
-    let axis = stage.axes.first().ok_or_else(|| refused("the example has no axis"))?;
-    Component::sliding_mode(&axis.settings, Law::Pd, false).map_err(refused)
+    Component::sliding_mode(&example_settings()?, Law::Pd, false).map_err(refused)
 }

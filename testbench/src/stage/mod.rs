@@ -11,7 +11,8 @@ pub use self::stimuli::StageRandom;
 
 use posicast_blocks::ClockedBlock;
 use posicast_blocks::component::Component;
-use posicast_blocks::stage::{StageConfig, StageError};
+use posicast_blocks::sliding_mode::Settings;
+use posicast_blocks::stage::{StageAxis, StageConfig, StageError};
 use posicast_hdl::SimulationError;
 use posicast_hdl::component::emit;
 use posicast_hdl::emit::{EmitError, Module};
@@ -174,6 +175,13 @@ impl Bins for StageCoverage {
 fn area(size: &'static str, traces: &str) -> Result<AreaRow, Error> {
     let component = Component::stage(&example(traces)?).map_err(refused)?;
     Ok(AreaRow::new(size, emit(&component, "xy_stage", "xy")?))
+}
+
+/// Returns the controller's settings of the example's first axis.
+pub(crate) fn example_settings() -> Result<Settings, Error> {
+    let stage = example("")?;
+    let of = stage.axes.first().and_then(StageAxis::closed_loop);
+    Ok(of.ok_or_else(|| refused("the example has no controller"))?.settings)
 }
 
 /// Returns the stage of the example machine, with this text before the controller of each axis.

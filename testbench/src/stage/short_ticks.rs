@@ -16,7 +16,7 @@ use std::collections::HashMap;
 
 use posicast_blocks::ClockedBlock;
 use posicast_blocks::divider::DividerConfig;
-use posicast_blocks::stage::{StageConfig, StageError};
+use posicast_blocks::stage::{StageConfig, StageError, StageLoop};
 use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module};
 
@@ -123,10 +123,11 @@ pub(crate) fn adapted(sources: &Sources, pairs: &Pairs) -> Result<Sources, Error
 /// Returns the stage with its shortest tick, if that is less than half of its own.
 pub(crate) fn shortened(config: &StageConfig) -> Option<StageConfig> {
     let mut short = config.clone();
-    let times = |axis: &posicast_blocks::stage::StageAxis| {
-        u32::from(axis.pwm.dead_time_floor_clocks()) + u32::from(axis.pwm.minimum_pulse_floor_clocks())
-    };
-    let longest = config.axes.iter().map(times).max()?;
+    let times =
+        |of: &StageLoop| u32::from(of.pwm.dead_time_floor_clocks()) + u32::from(of.pwm.minimum_pulse_floor_clocks());
+    // A step generator is built for one length of tick.
+    let loops = config.axes.iter().map(|axis| axis.closed_loop().map(times));
+    let longest = loops.collect::<Option<Vec<_>>>()?.into_iter().max()?;
     let least = (PERIOD_TO_TIMES * longest).max(LEAST_PERIOD_CLOCKS);
     // The tick has as many periods as fit into the schedule, and is not longer than that.
     let schedule = config.timing().duty_clocks() + 1;
@@ -137,7 +138,9 @@ pub(crate) fn shortened(config: &StageConfig) -> Option<StageConfig> {
         return None;
     }
     for axis in &mut short.axes {
-        axis.pwm_period_clocks = period;
+        if let Some(of) = axis.closed_loop_mut() {
+            of.pwm_period_clocks = period;
+        }
         let watched = &mut axis.supervision;
         for ticks in [
             &mut watched.brake_release_ticks,

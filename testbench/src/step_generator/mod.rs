@@ -80,6 +80,15 @@ impl StepGeneratorBlock {
             instance: format!("{} clocks per tick", config.tick_clocks()),
         }
     }
+
+    /// Sets the instance that a report names.
+    #[must_use]
+    pub fn called(self, instance: &str) -> Self {
+        Self {
+            instance: instance.to_owned(),
+            ..self
+        }
+    }
 }
 
 impl Block for StepGeneratorBlock {
@@ -117,6 +126,13 @@ impl Block for StepGeneratorBlock {
 
     fn coverage(&self) -> Box<dyn Bins + '_> {
         Box::new(StepGeneratorCoverage::new(&self.config))
+    }
+
+    fn fixed(&self) -> Vec<(String, &'static str)> {
+        // The steps that wait for one reversal are taken off before those of the next are added.
+        let unreachable = u64::from(self.config.owed_limit()) > self.config.reversal_steps();
+        let reason = "more steps may be owed than a reversal at the largest rate leaves";
+        Vec::from_iter(unreachable.then(|| ("owed_exceeded".to_owned(), reason)))
     }
 
     fn least_clocks(&self) -> u64 {

@@ -67,7 +67,7 @@ impl StepGeneratorCoverage {
 
     /// Adds a clock.
     pub fn observe(&mut self, clock: &Clock<'_>) {
-        let (Ok(&[rst, enable, tick, _, clear_flags]), Ok(&[_, _, count, owed, active, too_fast, owed_exceeded])) = (
+        let (Ok(&[rst, enable, tick, _, clear_flags]), Ok(&[_, _, count, owed, active, too_fast, owed_exceeded, _])) = (
             <&[u64; INPUT_PORTS]>::try_from(clock.inputs),
             <&[u64; OUTPUT_PORTS]>::try_from(clock.expected),
         ) else {

@@ -9,7 +9,7 @@
 //   setup, hold        the direction changes HOLD clocks after a pulse or later, and SETUP clocks before the next or earlier; up and
 //                      down, or both ways in quadrature, are apart by their sum
 //   disabled_rests     no pulse begins, and no direction changes, one clock after enable was low
-//   stopped_rests      nor while a cause stands, or while the block is not active
+//   stopped_rests      nor while a cause stands, or while the block is not active; `tripped` says that a cause stands (trips)
 //   owed_bounded       at most one step more than the limit is ever owed, and that is a cause in the next clock
 //   nothing_lost       the steps given and owed are those demanded since the block is active
 //   exact              the demanded steps are the position of the last tick, rounded half up, when its clocks are over; proven at
@@ -125,6 +125,7 @@ module step_generator_properties (
         known_owed: assert ((owed_word & ~`USED_OWED) == 16'd0);
         owed_only_while_active: assert (active | owed == 16'd0);
         cause_stops: assert (!active | !(too_fast | owed_exceeded));
+        trips: assert (tripped == (too_fast | owed_exceeded));
     end
 
     // Steps demanded. While the block is active, `demanded` is their sum, beginning at the rounded position.

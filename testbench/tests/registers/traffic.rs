@@ -287,9 +287,9 @@ fn stage() -> Bed {
     let designed = hardware::stage(&machine, &design_machine(&machine).unwrap()).unwrap();
     let mut config = designed.unwrap().config;
     for axis in &mut config.axes {
-        axis.pwm = PwmConfig::new(ActiveLow::default(), 2, 3).unwrap();
-        axis.pwm_period_clocks = PERIOD_CLOCKS;
-        axis.encoder_filter_clocks = 2;
+        axis.closed_loop_mut().unwrap().pwm = PwmConfig::new(ActiveLow::default(), 2, 3).unwrap();
+        axis.closed_loop_mut().unwrap().pwm_period_clocks = PERIOD_CLOCKS;
+        axis.closed_loop_mut().unwrap().encoder_filter_clocks = 2;
         (axis.supervision.brake_release_ticks, axis.supervision.filter_clocks) = (1, 3);
     }
     let periods = config.timing().duty_clocks() / PERIOD_CLOCKS + 1;

@@ -82,6 +82,7 @@ impl ClosedLoop<'_> {
                         residual: residual(&self.shaped, index),
                         residual_minus_10_percent: residual(&self.slower, index),
                         residual_plus_10_percent: residual(&self.faster, index),
+                        lost_steps: axis.steps.and(self.shaped.lost_steps.get(index).copied()),
                         ringing: self.ringing(index),
                         error_table: self.compensated().find(|(place, _)| *place == index).map(|(_, of)| {
                             Compensation {
@@ -161,6 +162,9 @@ pub struct MovedAxis {
     pub residual_minus_10_percent: Option<f64>,
     /// With the shaper, and the modes' frequencies 10 % higher.
     pub residual_plus_10_percent: Option<f64>,
+    /// Steps that the motor lost in the move; absent on an axis without steps.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lost_steps: Option<u64>,
     /// Ringing without the shaper and with it; `None` if one of the moves was not made to its end.
     #[serde(skip)]
     pub ringing: Option<[f64; 2]>,

@@ -18,6 +18,7 @@ impl ClosedLoop<'_> {
         checks.extend(self.contours.as_ref().and_then(Contours::check));
         checks.push(self.without_trouble());
         checks.push(self.follows());
+        checks.extend(self.kept_steps());
         checks.extend(self.calmer());
         checks.extend(self.limited());
         checks.extend(self.led_to_true_positions());
@@ -26,6 +27,38 @@ impl ClosedLoop<'_> {
 
     fn moves(&self) -> [&Moved; 4] {
         [&self.shaped, &self.unshaped, &self.slower, &self.faster]
+    }
+
+    /// No motor may lose a step; there is no check if no axis has steps.
+    fn kept_steps(&self) -> Option<Check> {
+        let axes = || {
+            self.machine
+                .axes
+                .iter()
+                .enumerate()
+                .filter(|(_, axis)| axis.steps.is_some())
+        };
+        let moves = self.moves();
+        let lost = axes().flat_map(|(index, axis)| {
+            let lost = moves
+                .iter()
+                .map(move |moved| moved.lost_steps.get(index).copied().unwrap_or(0));
+            lost.max().map(|most| (axis.name.as_str(), most))
+        });
+        let worst = lost.max_by_key(|(_, most)| *most)?;
+        let motors = axes().filter(|(_, axis)| axis.stepper.is_some()).count();
+        let detail = match worst {
+            (_, 0) => format!(
+                "{} moves of {}, {motors} with a simulated motor",
+                moves.len(),
+                counted(axes().count() as u64, "axis")
+            ),
+            (name, most) => format!(
+                "axis {name} lost {}: lower its acceleration or its velocity",
+                counted(most, "step")
+            ),
+        };
+        Some(Check::new("no motor loses a step", worst.1 == 0, detail))
     }
 
     fn without_trouble(&self) -> Check {

@@ -20,6 +20,7 @@ use crate::segments::Segments;
 use crate::setting_banks::SettingBanks;
 use crate::shaper::{Shaper, ShaperConfig};
 use crate::sliding_mode::{Settings, SlidingMode};
+use crate::step_generator::{StepGenerator, StepGeneratorConfig};
 use crate::time_base::TimeBase;
 use crate::trace::{Trace, TraceConfig};
 
@@ -45,6 +46,8 @@ pub enum ComponentPart {
     TimeBase(DividerConfig),
     /// The PWM.
     Pwm(PwmConfig),
+    /// The step generator.
+    StepGenerator(StepGeneratorConfig),
     /// The controller.
     SlidingMode,
     /// The settings of the controller, with the machine's in bank 0.
@@ -83,6 +86,7 @@ impl ComponentPart {
             Self::Shaper(_) => "shaper",
             Self::SampleSelect { .. } => "sample_select",
             Self::Pwm(_) => "pwm",
+            Self::StepGenerator(_) => "step_generator",
             Self::SlidingMode => "sliding_mode",
             Self::SettingBanks(_) => "setting_banks",
             Self::PulseCounter => "pulse_counter",
@@ -111,6 +115,7 @@ impl ComponentPart {
                 | Self::Shaper(_)
                 | Self::SettingBanks(_)
                 | Self::Pwm(_)
+                | Self::StepGenerator(_)
                 | Self::ErrorTable(_)
                 | Self::Trace(_)
                 | Self::Joined(_)
@@ -124,6 +129,7 @@ impl ComponentPart {
             Self::Shaper(config) => Box::new(Shaper::new(config, seed)),
             Self::SampleSelect { word_bits, channels } => Box::new(SampleSelect::new(*word_bits, *channels)),
             Self::Pwm(config) => Box::new(Pwm::new(config)),
+            Self::StepGenerator(config) => Box::new(StepGenerator::new(config)),
             Self::SlidingMode => Box::new(SlidingMode::new()),
             Self::SettingBanks(machine) => Box::new(SettingBanks::new(machine)),
             Self::PulseCounter => Box::new(PulseCounter::new()),

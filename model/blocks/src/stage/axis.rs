@@ -1,15 +1,17 @@
 //! Joins the blocks of an axis: the net of each port, and the inputs that are tied to the machine's constants.
 
 use super::bring_up::TRACED;
-use super::config::StageAxis;
+use super::config::{Follower, StageAxis, StageLoop};
 use super::registers::{axis_window, hardware};
+use super::steps;
 use crate::Direction;
 use crate::component::{ComponentPart, JoinedBlocks, Wiring};
 use crate::composition::{CompositionError, Part};
 use crate::error_table::EntryUnit;
+use crate::pwm::PwmConfig;
 use crate::trace::SIGNALS;
 
-/// Input pins of every axis.
+/// Input pins of an axis with a controller.
 const INPUT_PINS: [&str; 9] = [
     "a",
     "b",
@@ -21,10 +23,12 @@ const INPUT_PINS: [&str; 9] = [
     "drive_fault_n",
     "fault_n",
 ];
+/// Input pins of an axis with steps.
+const INPUT_PINS_WITH_STEPS: [&str; 5] = ["z", "limit_plus_n", "limit_minus_n", "home", "drive_ready"];
 /// Input pins of a linear scale.
 const SCALE_PINS: [&str; 2] = ["scale_a", "scale_b"];
-/// Output pins of an axis.
-pub(super) const OUTPUT_PINS: &[&str] = &[
+/// Output pins of an axis with a controller.
+const OUTPUT_PINS: [&str; 7] = [
     "a_high",
     "a_low",
     "b_high",
@@ -33,7 +37,11 @@ pub(super) const OUTPUT_PINS: &[&str] = &[
     "drive_enable",
     "brake_release",
 ];
-/// Nets of the stage that all axes read.
+/// Output pins of an axis with steps, in addition to its lines.
+const OUTPUT_PINS_WITH_STEPS: [&str; 2] = ["drive_enable", "brake_release"];
+/// The line that switches all PWMs off.
+pub(super) const PLL_LOCKED: &str = "pll_locked";
+/// Nets of the stage that axes read.
 pub(super) const SHARED: [&str; 8] = [
     "rst",
     "tick",
@@ -42,7 +50,7 @@ pub(super) const SHARED: [&str; 8] = [
     "quotient",
     "group_emergency_stop",
     "emergency_stop_n",
-    "pll_locked",
+    PLL_LOCKED,
 ];
 /// Nets from the stage to this axis.
 const FROM_STAGE: [&str; 4] = ["quotient_valid", "axis_start", "group_stop", "hold_feed"];
@@ -61,7 +69,7 @@ const VELOCITY_TIMEOUT: u64 = 76;
 /// The PWM trips after this many ticks without a command of the controller.
 const WATCHDOG_TICKS: u32 = 2;
 
-type Nets = &'static [(&'static str, &'static str)];
+pub(super) type Nets = &'static [(&'static str, &'static str)];
 
 const SEGMENTS: Nets = &[
     ("enable", "segments_enable"),
@@ -130,7 +138,6 @@ const CONTROLLER: Nets = &[
 ];
 
 const PULSE_COUNTER: Nets = &[
-    ("invert", "encoder_invert"),
     ("clear_flags", "clear_sources"),
     ("time_stamp", "edge_stamp"),
     ("illegal", "encoder_illegal"),
@@ -190,7 +197,7 @@ const GENERATOR: Nets = &[
     ("z_n", "counter_z_n"),
 ];
 
-const ERROR_TABLE: Nets = &[("measured", "captured_position"), ("drive_enable", "axis_drive_enable")];
+const ERROR_TABLE: Nets = &[("measured", "captured_position")];
 
 const EXCITATION: Nets = &[
     ("valid", "shaper_valid"),
@@ -238,6 +245,9 @@ const AXIS: Nets = &[
     ("start", "axis_start"),
     ("reference_position", "shaped_position"),
     ("reference_velocity", "shaped_velocity"),
+];
+
+const AXIS_WITH_LOOP: Nets = &[
     ("saturated_high", "controller_saturated_high"),
     ("saturated_low", "controller_saturated_low"),
     ("drive_enable", "axis_drive_enable"),
@@ -249,7 +259,18 @@ const AXIS: Nets = &[
 /// Input pins of this axis.
 pub(super) fn input_pins(axis: &StageAxis) -> Vec<&'static str> {
     let scale: &[&str] = if axis.scale.is_some() { &SCALE_PINS } else { &[] };
-    [&INPUT_PINS, scale].concat()
+    match axis.follower {
+        Follower::Loop(_) => [&INPUT_PINS, scale].concat(),
+        Follower::Steps(_) => [&INPUT_PINS_WITH_STEPS, scale].concat(),
+    }
+}
+
+/// Output pins of this axis.
+pub(super) fn output_pins(axis: &StageAxis) -> Vec<&'static str> {
+    match &axis.follower {
+        Follower::Loop(_) => OUTPUT_PINS.to_vec(),
+        Follower::Steps(config) => [&config.mode().line_names(), &OUTPUT_PINS_WITH_STEPS[..]].concat(),
+    }
 }
 
 /// Joins the blocks of an axis. The whole has the axis's name; its ports are the nets that registers, stage and pins
@@ -257,22 +278,30 @@ pub(super) fn input_pins(axis: &StageAxis) -> Vec<&'static str> {
 ///
 /// `tick_clocks` are the clocks from tick to tick, for the PWM's watchdog.
 pub(super) fn join(axis: &StageAxis, tick_clocks: u32) -> Result<JoinedBlocks, CompositionError> {
-    let mut blocks = vec![
-        ComponentPart::Segments,
-        ComponentPart::Shaper(Box::new(axis.shaper.clone())),
-        ComponentPart::SettingBanks(Box::new(axis.settings)),
-        ComponentPart::SlidingMode,
-        ComponentPart::PulseCounter,
-        ComponentPart::DriveCommand,
-        ComponentPart::Pwm(axis.pwm.on_time_base()),
-        ComponentPart::Axis,
-    ];
+    let shaper = ComponentPart::Shaper(Box::new(axis.shaper.clone()));
+    let mut blocks = match &axis.follower {
+        Follower::Loop(of) => vec![
+            ComponentPart::Segments,
+            shaper,
+            ComponentPart::SettingBanks(Box::new(of.settings)),
+            ComponentPart::SlidingMode,
+            ComponentPart::PulseCounter,
+            ComponentPart::DriveCommand,
+            ComponentPart::Pwm(of.pwm.on_time_base()),
+            ComponentPart::Axis,
+        ],
+        Follower::Steps(config) => vec![
+            ComponentPart::Segments,
+            shaper,
+            ComponentPart::StepGenerator(*config),
+            ComponentPart::PulseCounter,
+            ComponentPart::Axis,
+        ],
+    };
     if let Some(trace) = axis.bring_up {
-        blocks.extend([
-            ComponentPart::EncoderGenerator,
-            ComponentPart::Excitation,
-            ComponentPart::Trace(trace),
-        ]);
+        let generator = axis.closed_loop().map(|_| ComponentPart::EncoderGenerator);
+        blocks.extend(generator);
+        blocks.extend([ComponentPart::Excitation, ComponentPart::Trace(trace)]);
     }
     if let Some(of) = &axis.error_table {
         blocks.push(ComponentPart::ErrorTable(Box::new(of.table.clone())));
@@ -291,8 +320,9 @@ pub(super) fn join(axis: &StageAxis, tick_clocks: u32) -> Result<JoinedBlocks, C
         all.map(|name| (*name).to_owned()).collect()
     };
     let mut inputs = names(&[&SHARED, &FROM_STAGE, &input_pins(axis)]);
+    inputs.retain(|name| name != PLL_LOCKED || axis.closed_loop().is_some());
     inputs.extend(driven);
-    let mut outputs = names(&[&TO_STAGE, OUTPUT_PINS]);
+    let mut outputs = names(&[&TO_STAGE, &output_pins(axis)]);
     let more = read.into_iter().filter(|name| !outputs.contains(name));
     let more: Vec<String> = more.collect();
     outputs.extend(more);
@@ -317,38 +347,27 @@ fn wire(axis: &StageAxis, tick_clocks: u32, block: &ComponentPart, part: Part) -
         ComponentPart::SlidingMode => on(part, CONTROLLER)
             .tied("modulo", axis.modulo.into())
             .on("velocity", if on_scale { "loop_velocity" } else { "velocity" })
-            .on(
-                "position_reference",
-                match axis.error_table {
-                    Some(_) => "compensated",
-                    None => uncompensated(axis),
-                },
-            ),
+            .on("position_reference", reference(axis)),
         ComponentPart::PulseCounter if part.name() == SCALE_COUNTER => scale_counter(axis, part),
         ComponentPart::PulseCounter => {
-            let part = counter(axis, on(part, PULSE_COUNTER)).on("position", "user_position");
-            match axis.bring_up {
-                Some(_) => part.on("a", "counter_a").on("b", "counter_b").on("z", "counter_z"),
-                None => part,
+            let part = on(part, PULSE_COUNTER).on("position", "user_position");
+            match (&axis.follower, axis.bring_up) {
+                (Follower::Steps(config), _) => steps::counter(config, part),
+                (Follower::Loop(of), Some(_)) => encoder(of, part)
+                    .on("a", "counter_a")
+                    .on("b", "counter_b")
+                    .on("z", "counter_z"),
+                (Follower::Loop(of), None) => encoder(of, part),
             }
         }
+        ComponentPart::StepGenerator(config) => steps::generator(config, reference(axis), part),
         ComponentPart::DriveCommand => on(part, DRIVE_COMMAND)
             .tied("direct_hold_ticks", watched.direct_hold_ticks.into())
             .tied("direct_limit", watched.direct_limit.into()),
-        ComponentPart::Pwm(config) => {
-            let period = u64::from(axis.pwm_period_clocks & 0xffff);
-            let watchdog = (WATCHDOG_TICKS * tick_clocks / axis.pwm_period_clocks.max(1)).clamp(1, 255);
-            on(part, PWM)
-                .tied("mode", axis.pwm_mode as u64)
-                .tied("period", period)
-                .tied("max_duty", axis.pwm_period_clocks.min(0xffff).into())
-                .tied("update_at_peak", 0)
-                .tied("dead_time", config.dead_time_floor_clocks().into())
-                .tied("minimum_pulse", config.minimum_pulse_floor_clocks().into())
-                .tied("phase", 0)
-                .tied("watchdog_periods", watchdog.into())
-                .tied("filter_clocks", watched.filter_clocks.into())
-        }
+        ComponentPart::Pwm(config) => match axis.closed_loop() {
+            Some(of) => pwm(of, config, tick_clocks, on(part, PWM)).tied("filter_clocks", watched.filter_clocks.into()),
+            None => part,
+        },
         ComponentPart::Axis => supervisor(axis, part)
             .tied("modulo", axis.modulo.into())
             .on("position", loop_position),
@@ -360,6 +379,13 @@ fn wire(axis: &StageAxis, tick_clocks: u32, block: &ComponentPart, part: Part) -
             None => part,
         },
         ComponentPart::ErrorTable(table) => on(part, ERROR_TABLE)
+            .on(
+                "drive_enable",
+                match axis.follower {
+                    Follower::Loop(_) => "axis_drive_enable",
+                    Follower::Steps(_) => "drive_enable",
+                },
+            )
             .on("position_reference", uncompensated(axis))
             .on(
                 "valid",
@@ -385,6 +411,28 @@ fn wire(axis: &StageAxis, tick_clocks: u32, block: &ComponentPart, part: Part) -
     }
 }
 
+/// Where the axis is to be.
+fn reference(axis: &StageAxis) -> &'static str {
+    match axis.error_table {
+        Some(_) => "compensated",
+        None => uncompensated(axis),
+    }
+}
+
+/// Connections of the PWM, whose mode and times the machine file fixes.
+fn pwm(of: &StageLoop, config: &PwmConfig, tick_clocks: u32, part: Part) -> Part {
+    let period = u64::from(of.pwm_period_clocks & 0xffff);
+    let watchdog = (WATCHDOG_TICKS * tick_clocks / of.pwm_period_clocks.max(1)).clamp(1, 255);
+    part.tied("mode", of.pwm_mode as u64)
+        .tied("period", period)
+        .tied("max_duty", of.pwm_period_clocks.min(0xffff).into())
+        .tied("update_at_peak", 0)
+        .tied("dead_time", config.dead_time_floor_clocks().into())
+        .tied("minimum_pulse", config.minimum_pulse_floor_clocks().into())
+        .tied("phase", 0)
+        .tied("watchdog_periods", watchdog.into())
+}
+
 /// Where the axis is to be, without its error table.
 fn uncompensated(axis: &StageAxis) -> &'static str {
     match axis.bring_up {
@@ -393,25 +441,36 @@ fn uncompensated(axis: &StageAxis) -> &'static str {
     }
 }
 
-fn on(part: Part, nets: Nets) -> Part {
+pub(super) fn on(part: Part, nets: Nets) -> Part {
     nets.iter().fold(part, |part, (port, net)| part.on(port, net))
 }
 
-/// Connections that the counters of motor and scale have in common.
-fn counter(axis: &StageAxis, part: Part) -> Part {
-    part.tied("a_n", 0)
-        .tied("b_n", 0)
-        .tied("z_n", 0)
-        .tied("differential", 0)
-        .tied("filter_clocks", axis.encoder_filter_clocks.into())
-        .tied("mode", 0)
-        .tied("swap", 0)
+/// Connections that all counters have in common.
+pub(super) fn counter(part: Part) -> Part {
+    let zeros = ["a_n", "b_n", "z_n", "differential", "swap"];
+    zeros
+        .iter()
+        .fold(part, |part, port| part.tied(port, 0))
         .tied("timeout", VELOCITY_TIMEOUT)
+}
+
+/// Connections of the counter of an encoder.
+fn encoder(of: &StageLoop, part: Part) -> Part {
+    quadrature(of.encoder_filter_clocks, part).on("invert", "encoder_invert")
+}
+
+fn quadrature(filter_clocks: u32, part: Part) -> Part {
+    counter(part)
+        .tied("filter_clocks", filter_clocks.into())
+        .tied("mode", 0)
 }
 
 /// Connections of the scale's counter, which only counts: its velocity is not divided.
 fn scale_counter(axis: &StageAxis, part: Part) -> Part {
-    let part = counter(axis, on(part, SCALE));
+    let filter_clocks = axis
+        .closed_loop()
+        .map_or(steps::SCALE_FILTER_CLOCKS, |of| of.encoder_filter_clocks);
+    let part = quadrature(filter_clocks, on(part, SCALE));
     let zeros = [
         "z",
         "index_arm",
@@ -449,6 +508,10 @@ fn supervisor(axis: &StageAxis, part: Part) -> Part {
         .tied("lost_command", watched.lost_command.into())
         .tied("lost_ticks", watched.lost_ticks.into())
         .tied("watches_direction", watched.watches_direction.into());
+    let part = match axis.follower {
+        Follower::Loop(_) => on(part, AXIS_WITH_LOOP),
+        Follower::Steps(_) => steps::supervisor(part),
+    };
     match axis.scale {
         Some(_) => part,
         None => part
@@ -465,8 +528,13 @@ fn trace(axis: &StageAxis, part: Part) -> Part {
         let port = format!("signal_{place}");
         match *net {
             "deviation" if axis.scale.is_none() => part.tied(&port, 0),
+            net if axis.steps().is_some() && steps::LACKS_SIGNALS.contains(&net) => part.tied(&port, 0),
             net => part.on(&port, net),
         }
     });
+    let part = match axis.follower {
+        Follower::Loop(_) => part,
+        Follower::Steps(_) => part.on("strobe", "control"),
+    };
     (TRACED.len()..SIGNALS).fold(part, |part, place| part.tied(&format!("signal_{place}"), 0))
 }

@@ -27,7 +27,7 @@ fn parameters(axis: &StageAxis) -> Vec<Register> {
             "pwm_period_clocks",
             0x00,
             "clocks of the PWM's period, which is full duty",
-            axis.pwm_period_clocks,
+            axis.closed_loop().map_or(0, |of| of.pwm_period_clocks),
         ),
         constant(
             "ring_samples",
@@ -161,7 +161,7 @@ fn loaded_tables(axis: &StageAxis) -> Vec<Register> {
             Access::Staged,
             "control law and settings in use",
             vec![
-                tables::law().with_reset(axis.law as u32),
+                tables::law().with_reset(axis.closed_loop().map_or(0, |of| of.law as u32)),
                 tables::setting_bank("law_bank"),
             ],
         ),
@@ -260,7 +260,7 @@ fn encoder(axis: &StageAxis) -> Vec<Register> {
             "sign of the loop's feedback",
             vec![
                 Field::flag("encoder_invert", 0, "reverses the encoder's direction")
-                    .with_reset(axis.encoder_invert.into()),
+                    .with_reset(axis.closed_loop().is_some_and(|of| of.encoder_invert).into()),
             ],
         ),
         Register::new(

@@ -9,9 +9,11 @@ use crate::linear_scale::ScaleRatio;
 use crate::pwm::{BridgeMode, PwmConfig};
 use crate::registers::MapError;
 use crate::schedule::{ScheduleConfig, ScheduleConfigError};
+use crate::segments::POSITION_FRACTION;
 use crate::shaper::ShaperConfig;
 use crate::sliding_mode::{Law, Settings};
 use crate::stage::Supervision;
+use crate::step_generator::StepGeneratorConfig;
 use crate::trace::TraceConfig;
 
 use super::schedule::StageSchedule;
@@ -34,12 +36,36 @@ pub struct StageAxis {
     pub name: String,
     /// Its shaper, which has three channels.
     pub shaper: ShaperConfig,
+    /// Whether it is a rotary axis, whose positions wrap.
+    pub modulo: bool,
+    /// What follows the shaped position.
+    pub follower: Follower,
+    /// Words of its supervisor.
+    pub supervision: Supervision,
+    /// Its linear scale, if it has one.
+    pub scale: Option<StageScale>,
+    /// Its error table.
+    pub error_table: Option<StageErrorTable>,
+    /// Aids for bring-up, if it has them: trace memory, test signals, an internal encoder.
+    pub bring_up: Option<TraceConfig>,
+}
+
+/// What makes an axis follow the shaped position.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Follower {
+    /// A controller, with an encoder and a PWM.
+    Loop(Box<StageLoop>),
+    /// The steps of a drive that has a loop of its own, or needs none.
+    Steps(StepGeneratorConfig),
+}
+
+/// Controller, encoder and PWM of an axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StageLoop {
     /// The controller's settings after reset.
     pub settings: Settings,
     /// The controller's law after reset.
     pub law: Law,
-    /// Whether it is a rotary axis, whose positions wrap.
-    pub modulo: bool,
     /// Build parameters of its PWM.
     pub pwm: PwmConfig,
     /// The PWM's mode.
@@ -50,14 +76,32 @@ pub struct StageAxis {
     pub encoder_filter_clocks: u32,
     /// Whether the encoder's direction is reversed after reset.
     pub encoder_invert: bool,
-    /// Words of its supervisor.
-    pub supervision: Supervision,
-    /// Its linear scale, if it has one.
-    pub scale: Option<StageScale>,
-    /// Its error table.
-    pub error_table: Option<StageErrorTable>,
-    /// Aids for bring-up, if it has them: trace memory, test signals, an internal encoder.
-    pub bring_up: Option<TraceConfig>,
+}
+
+impl StageAxis {
+    /// Its controller, encoder and PWM; `None` on an axis with steps.
+    pub fn closed_loop(&self) -> Option<&StageLoop> {
+        match &self.follower {
+            Follower::Loop(of) => Some(of),
+            Follower::Steps(_) => None,
+        }
+    }
+
+    /// As [`StageAxis::closed_loop`], to change it.
+    pub fn closed_loop_mut(&mut self) -> Option<&mut StageLoop> {
+        match &mut self.follower {
+            Follower::Loop(of) => Some(of),
+            Follower::Steps(_) => None,
+        }
+    }
+
+    /// Its step generator; `None` on an axis with a controller.
+    pub fn steps(&self) -> Option<&StepGeneratorConfig> {
+        match &self.follower {
+            Follower::Loop(_) => None,
+            Follower::Steps(config) => Some(config),
+        }
+    }
 }
 
 /// The linear scale of an axis.
@@ -119,6 +163,22 @@ pub enum StageError {
         /// Clocks of a tick.
         tick: u32,
     },
+    /// A step generator is built for other ticks or positions than those of the stage.
+    #[error(
+        "the step generator of axis {axis} is built for ticks of {tick_clocks} clocks and positions with {fraction_bits} \
+         fraction bits: a stage with ticks of {tick} clocks has positions with {POSITION_FRACTION}; set \
+         fixed_point.command_fraction = {POSITION_FRACTION}"
+    )]
+    Steps {
+        /// Name of the axis.
+        axis: String,
+        /// Clocks per tick of the step generator.
+        tick_clocks: u32,
+        /// Fraction bits of its position.
+        fraction_bits: u32,
+        /// Clocks of the stage's tick.
+        tick: u32,
+    },
     /// The schedule block cannot be built.
     #[error(transparent)]
     ScheduleBlock(#[from] ScheduleConfigError),
@@ -166,7 +226,27 @@ impl StageConfig {
                     word_bits: axis.shaper.word_bits(),
                 });
             }
-            let period = axis.pwm_period_clocks;
+            match &axis.follower {
+                Follower::Steps(config)
+                    if (config.tick_clocks(), config.fraction_bits()) != (tick, POSITION_FRACTION) =>
+                {
+                    return Err(StageError::Steps {
+                        axis: axis.name.clone(),
+                        tick_clocks: config.tick_clocks(),
+                        fraction_bits: config.fraction_bits(),
+                        tick,
+                    });
+                }
+                _ => {}
+            }
+            let Some(StageLoop {
+                pwm_period_clocks: period,
+                ..
+            }) = axis.closed_loop()
+            else {
+                continue;
+            };
+            let period = *period;
             if !(2..=65_536).contains(&period) || !tick.is_multiple_of(period) {
                 return Err(StageError::Period {
                     axis: axis.name.clone(),

@@ -6,7 +6,7 @@
 //!                │
 //! tick ─► time_base, schedule, divider, divider_share, group          one of each
 //!                │
-//!  per axis: segments ─► shaper ─► sliding_mode ─► drive_command ─► pwm ─► gates
+//!  per axis: segments ─► shaper ─► sliding_mode ─► drive_command ─► pwm ─► gates      with [axis.steps]: step_generator ─► lines
 //!                │                  ▲  ▲
 //!            axis (supervisor)      │  pulse_counter ◄─ encoder        with [axis.scale]: pulse_counter, linear_scale
 //!                              setting_banks                           with [axis.trace]: trace, excitation, encoder_generator
@@ -27,20 +27,25 @@ mod config;
 mod error_table;
 mod registers;
 mod schedule;
+mod steps;
 mod supervision;
 
-pub use self::config::{StageAxis, StageConfig, StageError, StageErrorTable, StageScale};
+pub use self::config::{Follower, StageAxis, StageConfig, StageError, StageErrorTable, StageLoop, StageScale};
 pub use self::registers::{AXIS_INTERRUPTS, axis_interrupt_bit, axis_window};
 pub use self::schedule::StageSchedule;
 pub use self::supervision::Supervision;
 
-use self::axis::SHARED;
+use self::axis::{PLL_LOCKED, SHARED};
 use super::component::{Component, ComponentPart, Wiring};
 use super::composition::Part;
 use super::registers::RegisterMap;
 
 /// Pins that all axes share.
-const SHARED_PINS: [&str; 2] = ["emergency_stop_n", "pll_locked"];
+fn shared_pins(config: &StageConfig) -> Vec<&'static str> {
+    let with_pwm = config.axes.iter().any(|axis| axis.closed_loop().is_some());
+    let pll_locked = with_pwm.then_some(PLL_LOCKED);
+    ["emergency_stop_n"].into_iter().chain(pll_locked).collect()
+}
 
 impl Component {
     /// The stage.
@@ -66,8 +71,8 @@ impl Component {
         let blocks = blocks.into_iter().map(|block| (block.name().to_owned(), block));
         let wiring = Wiring {
             part: Box::new(|block, part| wire(config, block, part)),
-            inputs: pins(config, &SHARED_PINS, axis::input_pins),
-            outputs: pins(config, &["tick"], |_| axis::OUTPUT_PINS.to_vec()),
+            inputs: pins(config, &shared_pins(config), axis::input_pins),
+            outputs: pins(config, &["tick"], axis::output_pins),
         };
         Ok(Self::joined(map, "stage", blocks.collect(), wiring)?)
     }

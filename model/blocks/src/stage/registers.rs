@@ -1,7 +1,7 @@
 //! The register map of a stage: a window of its own, and one per axis, all alike.
 
-use super::config::{StageAxis, StageConfig};
-use super::{axis_settings, axis_words, bring_up, error_table};
+use super::config::{Follower, StageAxis, StageConfig};
+use super::{axis_settings, axis_words, bring_up, error_table, steps};
 use crate::group::MOST_AXES;
 use crate::registers::maps;
 use crate::registers::{Access, Description, Field, FlagSource, Register, WINDOW_WORDS};
@@ -57,8 +57,13 @@ pub(super) fn stage(config: &StageConfig) -> Description {
             Access::Snapshot,
             "freezes the words `SNAPSHOT_...` of all axes",
             vec![],
-        )
-        .with(
+        );
+    let windows: Vec<Vec<Register>> = config.axes.iter().map(axis_window).collect();
+    let any = |of: fn(&Access) -> bool| windows.iter().flatten().any(|register| of(&register.access));
+    let staged = any(|access| matches!(access, Access::Staged));
+    let guarded = any(|access| matches!(access, Access::Guarded { .. }));
+    if staged {
+        description = description.with(
             "commit",
             0x09,
             Access::Commit {
@@ -66,7 +71,9 @@ pub(super) fn stage(config: &StageConfig) -> Description {
             },
             "applies the staged registers of all axes together at the next tick",
             vec![Field::flag("commit_waits", 0, "a commit waits")],
-        )
+        );
+    }
+    let mut description = description
         .with(
             "start",
             0x0a,
@@ -79,19 +86,7 @@ pub(super) fn stage(config: &StageConfig) -> Description {
             0x0b,
             Access::Sticky,
             "events since the flag was cleared",
-            vec![
-                maps::partial_write(0),
-                Field::flag(
-                    "commit_rejected",
-                    1,
-                    "a write was ignored because a commit \
-                    waits",
-                )
-                .set_by(FlagSource::CommitRejected),
-                Field::flag("start_refused", 2, "an axis could not start, so none was started"),
-                Field::flag("guard_refused", 3, "a write was ignored: the drive of its axis was on")
-                    .set_by(FlagSource::GuardRefused),
-            ],
+            flags(staged, guarded),
         )
         .with_interrupts(0x0c, interrupts(config))
         .with(
@@ -115,9 +110,10 @@ pub(super) fn stage(config: &StageConfig) -> Description {
             "ticks since reset",
             vec![Field::new("tick_count", 0, 32, "modulo 2^32").with_unit("ticks")],
         );
-    for (window, axis) in (1..).zip(&config.axes) {
-        let registers = axis_window(axis).into_iter();
-        let placed = registers.map(|register| axis_register(register, &axis.name, window * WINDOW_WORDS));
+    for ((window, axis), registers) in (1..).zip(&config.axes).zip(windows) {
+        let placed = registers
+            .into_iter()
+            .map(|register| axis_register(register, &axis.name, window * WINDOW_WORDS));
         description.registers.extend(placed);
     }
     description
@@ -149,6 +145,21 @@ fn axis_register(mut register: Register, axis: &str, base: u32) -> Register {
         _ => {}
     }
     register
+}
+
+/// Flags of the stage: those of a commit only with `staged` registers, those of a guard only with `guarded` ones.
+fn flags(staged: bool, guarded: bool) -> Vec<Field> {
+    let commit = Field::flag("commit_rejected", 1, "a write was ignored because a commit waits")
+        .set_by(FlagSource::CommitRejected);
+    let guard = Field::flag("guard_refused", 3, "a write was ignored: the drive of its axis was on")
+        .set_by(FlagSource::GuardRefused);
+    let start = Field::flag("start_refused", 2, "an axis could not start, so none was started");
+    [maps::partial_write(0)]
+        .into_iter()
+        .chain(staged.then_some(commit))
+        .chain([start])
+        .chain(guarded.then_some(guard))
+        .collect()
 }
 
 fn feed_holds(config: &StageConfig) -> Vec<Field> {
@@ -208,5 +219,8 @@ pub fn axis_window(axis: &StageAxis) -> Vec<Register> {
     if axis.bring_up.is_some() {
         registers.extend(bring_up::registers());
     }
-    registers
+    match &axis.follower {
+        Follower::Loop(_) => registers,
+        Follower::Steps(config) => steps::registers(config, registers),
+    }
 }

@@ -23,6 +23,29 @@ pub enum StepMode {
     Quadrature,
 }
 
+impl StepMode {
+    /// Every mode.
+    pub const ALL: [Self; 3] = [Self::StepDirection, Self::UpDown, Self::Quadrature];
+
+    /// Name of the mode, in machine files and in Verilog.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::StepDirection => "step_direction",
+            Self::UpDown => "up_down",
+            Self::Quadrature => "quadrature",
+        }
+    }
+
+    /// Names of the lines A and B.
+    pub fn line_names(self) -> [&'static str; 2] {
+        match self {
+            Self::StepDirection => ["step", "direction"],
+            Self::UpDown => ["step_up", "step_down"],
+            Self::Quadrature => ["step_a", "step_b"],
+        }
+    }
+}
+
 /// Times of the lines in clocks, all of them minima.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StepTimes {

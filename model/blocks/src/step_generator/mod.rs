@@ -118,6 +118,7 @@ impl StepGenerator {
             active: self.active,
             too_fast: self.too_fast,
             owed_exceeded: self.owed_exceeded,
+            tripped: self.too_fast || self.owed_exceeded,
         }
     }
 

@@ -19,7 +19,7 @@ ports! {
         clear_flags: Bit as bool;
     }
 
-    /// The output ports, all of them registers.
+    /// The output ports: registers, and a function of two of them.
     outputs Outputs {
         /// Level of the line for steps, for steps up, or for quadrature A.
         a: Bit as bool;
@@ -35,5 +35,7 @@ ports! {
         too_fast: Bit as bool;
         /// Sticky: more steps were owed than the limit of the build. The axis has stopped.
         owed_exceeded: Bit as bool;
+        /// One of the two flags stands: the axis has stopped with a cause.
+        tripped: Bit as bool;
     }
 }

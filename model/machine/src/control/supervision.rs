@@ -46,7 +46,10 @@ const DEFAULT_EXCITATION_COUNTS: u16 = 4;
 /// Relative rounding of decimals such as `0.3`, which binary fractions only approximate.
 const DECIMALS: f64 = 1e-9;
 
-/// Computes the supervisor's words of an axis with a controller, whose shaper has this table.
+/// Ticks from the shaped position to its last step: the line between two samples takes one, and begins within another.
+const STEPS_LAG_TICKS: u32 = 2;
+
+/// Computes the supervisor's words of an axis with a controller or steps, whose shaper has this table.
 ///
 /// # Errors
 /// [`SupervisionError`] names the first value that its word does not hold, with the allowed range.
@@ -63,8 +66,17 @@ pub fn supervision(
         axis,
         clock,
         limits: axis.limits.unwrap_or_default(),
-        pwm: axis.pwm.as_ref().ok_or_else(|| missing("pwm"))?,
-        drive: axis.drive.as_ref().ok_or_else(|| missing("drive"))?,
+        output: match (&axis.steps, &axis.pwm, &axis.drive) {
+            (Some(_), ..) => None,
+            (None, pwm, drive) => Some((
+                pwm.as_ref().ok_or_else(|| missing("pwm"))?,
+                drive.as_ref().ok_or_else(|| missing("drive"))?,
+            )),
+        },
+    };
+    let lasting = match words.output {
+        Some(_) => 0,
+        None => STEPS_LAG_TICKS,
     };
     let limits = &words.limits;
     let [soft_limit_minus, soft_limit_plus] = words.soft_limits()?;
@@ -73,7 +85,7 @@ pub fn supervision(
         off_causes: limits.off_causes,
         brake_release_ticks: words.ticks_up("axis.limits.brake_release_s", limits.brake_release_s)?,
         brake_apply_ticks: words.ticks_up("axis.limits.brake_apply_s", limits.brake_apply_s)?,
-        settle_ticks: words.settle_ticks(table.longest_delay_samples)?,
+        settle_ticks: words.settle_ticks(table.longest_delay_samples + lasting)?,
         soft_limit_plus,
         soft_limit_minus,
         limits_after_homing: limits.soft_limits_after_homing,
@@ -154,8 +166,8 @@ struct Words<'a> {
     axis: &'a AxisSection,
     clock: &'a ClockSection,
     limits: LimitsSection,
-    pwm: &'a PwmSection,
-    drive: &'a Drive,
+    /// PWM and drive; `None` on an axis with steps.
+    output: Option<(&'a PwmSection, &'a Drive)>,
 }
 
 /// A value of the file that becomes a word.
@@ -294,10 +306,10 @@ impl Words<'_> {
     }
 
     fn lost_command(&self) -> Result<u32, SupervisionError> {
-        if self.limits.encoder_lost_s == 0.0 {
+        let Some((_, drive)) = self.output.filter(|_| self.limits.encoder_lost_s != 0.0) else {
             return Ok(0);
-        }
-        let part_that_is_commanded = match self.drive.mode {
+        };
+        let part_that_is_commanded = match drive.mode {
             DriveMode::Torque {
                 current_limit_a,
                 full_scale_a,
@@ -305,7 +317,7 @@ impl Words<'_> {
             } => current_limit_a / full_scale_a,
             DriveMode::Velocity { .. } => 1.0,
         };
-        let scale = full_scale(&self.drive.mode) * f64::from(1u32 << COMMAND_FRACTION);
+        let scale = full_scale(&drive.mode) * f64::from(1u32 << COMMAND_FRACTION);
         let largest = (part_that_is_commanded * scale - 2.0).clamp(0.0, f64::from(SIZE_MAX));
         let value = Value {
             key: "axis.limits.encoder_lost_command",
@@ -349,7 +361,10 @@ impl Words<'_> {
     }
 
     fn direct_limit(&self) -> u16 {
-        let period = f64::from(self.pwm.period_clocks(self.clock));
+        let Some((pwm, _)) = self.output else {
+            return 0;
+        };
+        let period = f64::from(pwm.period_clocks(self.clock));
         // The largest period has 65536 clocks, one more than the word holds.
         down(self.limits.direct_duty * period).clamp(0.0, f64::from(u16::MAX)) as u16
     }

@@ -1,6 +1,6 @@
 //! The hardware of one axis: its shaper, the gains of its loop, its components.
 
-use super::{HardwareError, PERIOD_KEY, SAMPLE_KEY, pwm_config, pwm_mode};
+use super::{HardwareError, PERIOD_KEY, SAMPLE_KEY, TimedLoop, pwm_config, pwm_mode};
 use crate::control::{
     ControlSchedule, Derived, NoTravel, TableBounds, gains, loop_lag_s, no_travel, schedule_delay_s, supervision,
 };
@@ -56,7 +56,7 @@ impl AxisHardware {
         index: usize,
         axis: &AxisSection,
         tables: Tables<'_>,
-        of_stage: Option<(f64, Derived)>,
+        of_stage: Option<TimedLoop>,
     ) -> Result<Self, HardwareError> {
         let shaper = shaper(machine, index, axis, tables);
         let control = control(machine, index, axis, tables, shaper.as_ref().ok(), of_stage)?;
@@ -179,14 +179,14 @@ fn control(
     axis: &AxisSection,
     tables: Tables<'_>,
     top: Option<&ShaperConfig>,
-    of_stage: Option<(f64, Derived)>,
+    of_stage: Option<TimedLoop>,
 ) -> Result<Option<AxisLoop>, HardwareError> {
     let (Some(drive), Some(pwm), Some(_)) = (&axis.drive, &axis.pwm, &axis.controller) else {
         return Ok(None);
     };
     let component = top.map(|top| component_shaper(axis, top));
     let (lag_s, derived) = match of_stage {
-        Some(of_stage) => of_stage,
+        Some(TimedLoop { lag_s, derived }) => (lag_s, derived),
         None => {
             // A shaper that cannot be built counts as 0 clocks.
             let shape_clocks = component.as_ref().map_or(0, |c| c.pass_clocks(c.most_products()));

@@ -18,7 +18,7 @@ mod stage;
 pub use axis::{AxisComponent, AxisHardware, AxisLoop};
 pub use error::HardwareError;
 pub use error_table::departure_counts as error_table_departure_counts;
-pub use stage::{MachineStage, MachineStageError, pwm_config, pwm_mode, stage};
+pub use stage::{MachineStage, MachineStageError, TimedLoop, pwm_config, pwm_mode, stage};
 
 use crate::machine_file::Machine;
 use crate::plan::MachineDesign;
@@ -72,8 +72,8 @@ impl<'a> Hardware<'a> {
             .map(|stage| &stage.of_machine);
         let axes = machine.axes.iter().zip(&design.axes).enumerate();
         let axes = axes.map(|(index, (axis, tables))| {
-            let derived = of_stage.map(|stage| (stage.lags_s[index], stage.derived[index].clone()));
-            AxisHardware::of(machine, index, axis, (tables, design.family_of(index)), derived)
+            let timed = of_stage.and_then(|stage| stage.loops[index].clone());
+            AxisHardware::of(machine, index, axis, (tables, design.family_of(index)), timed)
         });
         Ok(Self {
             machine,

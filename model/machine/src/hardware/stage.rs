@@ -11,9 +11,12 @@ use posicast_blocks::divider::{DividerConfig, DividerConfigError};
 use posicast_blocks::error_table::ErrorTableConfigError;
 use posicast_blocks::linear_scale::{ScaleRatio, ScaleRatioError};
 use posicast_blocks::pwm::{ActiveLow, BridgeMode, PwmConfig, PwmConfigError};
+use posicast_blocks::segments::POSITION_FRACTION;
 use posicast_blocks::shaper::{ShaperConfig, ShaperConfigError, ShaperMotion};
+use posicast_blocks::sliding_mode::{Law, Settings};
 use posicast_blocks::stage::Supervision;
-use posicast_blocks::stage::{StageAxis, StageConfig, StageErrorTable, StageScale, StageSchedule};
+use posicast_blocks::stage::{Follower, StageAxis, StageConfig, StageErrorTable, StageLoop, StageScale, StageSchedule};
+use posicast_blocks::step_generator::{StepGeneratorConfig, StepGeneratorConfigError};
 use posicast_blocks::trace::{TraceConfig, TraceConfigError};
 
 /// A stage, with the figures derived for its axes.
@@ -21,12 +24,19 @@ use posicast_blocks::trace::{TraceConfig, TraceConfigError};
 pub struct MachineStage {
     /// Configuration of the stage.
     pub config: StageConfig,
-    /// Lag of each axis's loop in s, with the timing of the stage.
-    pub lags_s: Vec<f64>,
-    /// Gains of each axis's controller, with the figures derived from them.
-    pub derived: Vec<Derived>,
+    /// The loop of each axis; `None` on an axis with steps.
+    pub loops: Vec<Option<TimedLoop>>,
     /// The table families of the axes whose modes move.
     pub families: Vec<TableFamily>,
+}
+
+/// The loop of an axis in the timing of its stage.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TimedLoop {
+    /// Lag of the loop in s.
+    pub lag_s: f64,
+    /// Gains of the controller, with the figures derived from them.
+    pub derived: Derived,
 }
 
 impl MachineStage {
@@ -62,6 +72,14 @@ pub enum MachineStageError {
         axis: usize,
         /// The reason.
         error: PwmConfigError,
+    },
+    /// The step generator of an axis cannot be built.
+    #[error("axis {axis}: {error}")]
+    Steps {
+        /// Index of the axis, from 0.
+        axis: usize,
+        /// The reason.
+        error: StepGeneratorConfigError,
     },
     /// The scale of an axis has a ratio that cannot be built.
     #[error("axis {axis}: {error}")]
@@ -112,6 +130,7 @@ impl MachineStageError {
             Self::Tick(_) => (0, "clock.sample_hz".to_owned()),
             Self::Shaper { axis, .. } => (*axis, "axis.shaper".to_owned()),
             Self::Pwm { axis, .. } => (*axis, "axis.pwm".to_owned()),
+            Self::Steps { axis, .. } => (*axis, "axis.steps".to_owned()),
             Self::Scale { axis, .. } => (*axis, "axis.scale.counts_per_unit".to_owned()),
             Self::ErrorTable { axis, .. } => (*axis, "axis.error_table.file".to_owned()),
             Self::Trace { axis, .. } => (*axis, "axis.trace.samples".to_owned()),
@@ -129,15 +148,14 @@ impl MachineStageError {
     }
 }
 
-/// The stage of a machine; `None` unless every axis has encoder, PWM, drive and controller.
+/// The stage of a machine; `None` unless every axis has encoder, PWM, drive and controller, or steps.
 ///
 /// # Errors
 /// [`MachineStageError`], which has the key to blame.
 pub fn stage(machine: &Machine, design: &MachineDesign) -> Result<Option<MachineStage>, MachineStageError> {
     let mut axes = Vec::new();
     for (index, (axis, tables)) in machine.axes.iter().zip(&design.axes).enumerate() {
-        let (Some(encoder), Some(pwm), Some(_), Some(_)) = (&axis.encoder, &axis.pwm, &axis.drive, &axis.controller)
-        else {
+        let Some(follows) = Follows::of(index, axis, &machine.clock)? else {
             return Ok(None);
         };
         let motion = ShaperMotion {
@@ -150,15 +168,13 @@ pub fn stage(machine: &Machine, design: &MachineDesign) -> Result<Option<Machine
         let watched = supervision(axis, &machine.clock, TableBounds::of_axis(&tables.table, family));
         axes.push(Parts {
             axis,
-            pwm,
-            encoder: *encoder,
+            follows,
             shaper: shaper.map_err(|error| MachineStageError::Shaper { axis: index, error })?,
             scale: scale(axis).map_err(|error| MachineStageError::Scale { axis: index, error })?,
             error_table: error_table::of_axis(axis)
                 .map_err(|error| MachineStageError::ErrorTable { axis: index, error })?,
             bring_up: trace(axis).map_err(|error| MachineStageError::Trace { axis: index, error })?,
             supervision: watched.map_err(|error| MachineStageError::Supervision { axis: index, error })?,
-            config: pwm_config(pwm, &machine.clock).map_err(|error| MachineStageError::Pwm { axis: index, error })?,
         });
     }
     let tick = DividerConfig::new(u64::from(machine.clock.clocks_per_sample()))?;
@@ -172,19 +188,12 @@ pub fn stage(machine: &Machine, design: &MachineDesign) -> Result<Option<Machine
         .iter()
         .any(|parts| parts.scale.is_some_and(|scale| scale.closes_loop));
     let used_clocks = StageSchedule::of(&passes, on_scale).duty_clocks();
-    let (mut lags_s, mut derived, mut built) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut loops, mut built) = (Vec::new(), Vec::new());
     for (index, parts) in axes.into_iter().enumerate() {
-        let delay_s = schedule_delay_s(&machine.clock, parts.pwm, used_clocks);
-        let lag_s = parts
-            .axis
-            .drive
-            .as_ref()
-            .map_or(delay_s, |drive| loop_lag_s(drive, delay_s));
-        let gains = gains(parts.axis, machine.clock, lag_s)
+        let timed = timed_loop(&parts, machine, used_clocks)
             .map_err(|error| MachineStageError::Control { axis: index, error })?;
-        lags_s.push(lag_s);
-        built.push(parts.build(&gains, &machine.clock));
-        derived.push(gains);
+        built.push(parts.build(timed.as_ref(), &machine.clock));
+        loops.push(timed);
     }
     Ok(Some(MachineStage {
         config: StageConfig {
@@ -192,22 +201,61 @@ pub fn stage(machine: &Machine, design: &MachineDesign) -> Result<Option<Machine
             axes: built,
             machine_crc: machine.link.map(|link| link.machine_crc),
         },
-        lags_s,
-        derived,
+        loops,
         families: design.families.clone(),
     }))
 }
 
+/// What is to follow the shaped position, before its gains are known.
+enum Follows<'a> {
+    Loop {
+        pwm: &'a PwmSection,
+        encoder: Encoder,
+        config: PwmConfig,
+    },
+    Steps(StepGeneratorConfig),
+}
+
+impl<'a> Follows<'a> {
+    /// Returns `None` where the axis has neither a complete loop nor steps.
+    fn of(index: usize, axis: &'a AxisSection, clock: &ClockSection) -> Result<Option<Self>, MachineStageError> {
+        if let Some(steps) = &axis.steps {
+            let config = steps.generator(clock, POSITION_FRACTION);
+            let config = config.map_err(|error| MachineStageError::Steps { axis: index, error })?;
+            return Ok(Some(Self::Steps(config)));
+        }
+        let (Some(encoder), Some(pwm), Some(_), Some(_)) = (&axis.encoder, &axis.pwm, &axis.drive, &axis.controller)
+        else {
+            return Ok(None);
+        };
+        Ok(Some(Self::Loop {
+            pwm,
+            encoder: *encoder,
+            config: pwm_config(pwm, clock).map_err(|error| MachineStageError::Pwm { axis: index, error })?,
+        }))
+    }
+}
+
+/// The loop of an axis, with gains for its lag; `None` on an axis with steps.
+fn timed_loop(parts: &Parts<'_>, machine: &Machine, used_clocks: u32) -> Result<Option<TimedLoop>, ControlError> {
+    let Follows::Loop { pwm, .. } = &parts.follows else {
+        return Ok(None);
+    };
+    let delay_s = schedule_delay_s(&machine.clock, pwm, used_clocks);
+    let drive = parts.axis.drive.as_ref();
+    let lag_s = drive.map_or(delay_s, |drive| loop_lag_s(drive, delay_s));
+    let derived = gains(parts.axis, machine.clock, lag_s)?;
+    Ok(Some(TimedLoop { lag_s, derived }))
+}
+
 struct Parts<'a> {
     axis: &'a AxisSection,
-    pwm: &'a PwmSection,
-    encoder: Encoder,
+    follows: Follows<'a>,
     shaper: ShaperConfig,
     supervision: Supervision,
     scale: Option<StageScale>,
     error_table: Option<StageErrorTable>,
     bring_up: Option<TraceConfig>,
-    config: PwmConfig,
 }
 
 fn scale(axis: &AxisSection) -> Result<Option<StageScale>, ScaleRatioError> {
@@ -236,18 +284,24 @@ fn trace(axis: &AxisSection) -> Result<Option<TraceConfig>, TraceConfigError> {
 }
 
 impl Parts<'_> {
-    fn build(self, derived: &Derived, clock: &ClockSection) -> StageAxis {
+    fn build(self, timed: Option<&TimedLoop>, clock: &ClockSection) -> StageAxis {
+        let follower = match self.follows {
+            Follows::Steps(config) => Follower::Steps(config),
+            Follows::Loop { pwm, encoder, config } => Follower::Loop(Box::new(StageLoop {
+                settings: timed.map_or_else(Settings::default, |timed| timed.derived.settings),
+                law: timed.map_or(Law::SlidingMode, |timed| timed.derived.law),
+                pwm: config,
+                pwm_mode: pwm_mode(pwm.mode),
+                pwm_period_clocks: pwm.period_clocks(clock),
+                encoder_filter_clocks: encoder.filter_clocks,
+                encoder_invert: encoder.invert,
+            })),
+        };
         StageAxis {
             name: self.axis.name.clone(),
             shaper: self.shaper,
-            settings: derived.settings,
-            law: derived.law,
             modulo: self.axis.modulo,
-            pwm: self.config,
-            pwm_mode: pwm_mode(self.pwm.mode),
-            pwm_period_clocks: self.pwm.period_clocks(clock),
-            encoder_filter_clocks: self.encoder.filter_clocks,
-            encoder_invert: self.encoder.invert,
+            follower,
             supervision: self.supervision,
             scale: self.scale,
             error_table: self.error_table,

@@ -5,7 +5,7 @@ use super::range::COUNTS_PER_UNIT;
 use super::table::Table;
 use super::{
     AxisSection, ClockSection, FixedPoint, ScaleUse, controller, drive, encoder, error_table, limits, mechanics, mode,
-    moving, pwm, scale, shaper, trace,
+    moving, pwm, scale, shaper, stepper, steps, trace,
 };
 use crate::unit::AxisUnit;
 use posicast_blocks::shaper::MOTION_WORD_BITS;
@@ -16,7 +16,7 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "counts_per_unit",
         Values::Counts(COUNTS_PER_UNIT),
-        "Encoder counts per unit.",
+        "Encoder counts per unit; with [axis.steps], steps per unit.",
     )
     .required(),
     Key::new(
@@ -60,6 +60,17 @@ pub(super) const KEYS: &[Key] = &[
         "controller",
         Values::Table(controller::KEYS),
         "Controller of the position loop.",
+    ),
+    Key::new(
+        "steps",
+        Values::Table(steps::KEYS),
+        "Lines of a drive with step inputs, in place of encoder, PWM, drive and controller.",
+    )
+    .rule("needs `[axis.limits]` with `velocity`"),
+    Key::new(
+        "stepper",
+        Values::Table(stepper::KEYS),
+        "Stepper motor behind the steps, for the simulation. Absent: a drive that is always at its steps.",
     ),
     Key::new(
         "limits",
@@ -113,6 +124,8 @@ pub(super) fn read(
     let pwm = table.table("pwm").map(|t| pwm::read(&t, clock));
     let drive = table.table("drive").map(|t| drive::read(&t, unit));
     let controller = table.table("controller").map(|t| controller::read(&t, unit));
+    let steps = table.table("steps").map(|t| (steps::read(&t, clock), t));
+    let stepper = table.table("stepper").map(|t| stepper::read(&t, unit));
     let scale = table.table("scale").map(|t| scale::read(table, &t, unit));
     let trace = table.table("trace").map(|t| trace::read(&t));
     let loop_counts_per_unit = match scale {
@@ -135,6 +148,15 @@ pub(super) fn read(
         error_table::read(&t, of_axis)
     });
     check_needs(table);
+    if let Some((Some(steps), table)) = &steps {
+        let of_axis = steps::OfAxis {
+            counts_per_unit,
+            limits: limits.as_ref(),
+            clock,
+            fixed_point,
+        };
+        steps::check(table, steps, &of_axis);
+    }
     if let Some(family) = family.as_ref().and_then(Option::as_ref) {
         moving::check(table, family, kind, limits.as_ref(), modulo, unit);
     }
@@ -155,6 +177,8 @@ pub(super) fn read(
         pwm: not_refused(pwm)?,
         drive: not_refused(drive)?,
         controller: not_refused(controller)?,
+        steps: not_refused(steps.map(|(steps, _)| steps))?,
+        stepper: not_refused(stepper)?,
         limits,
         scale: not_refused(scale)?,
         error_table: not_refused(error_table)?,
@@ -205,52 +229,89 @@ fn read_modulo(table: &Table<'_, '_>, fixed_point: Option<FixedPoint>) -> bool {
 pub(super) struct Need {
     pub(super) block: &'static str,
     pub(super) others: &'static [&'static str],
+    /// A block that does in place of the others.
+    pub(super) or: Option<&'static str>,
     allowed: &'static str,
 }
 
 /// Blocks of an axis that need other blocks.
-pub(super) const NEEDS: [Need; 5] = [
+pub(super) const NEEDS: [Need; 7] = [
     Need {
         block: "scale",
         others: &["encoder"],
-        allowed: "a scale with [axis.encoder], the motor's, which it is compared with",
+        or: Some("steps"),
+        allowed: "a scale with [axis.encoder], the motor's, which it is compared with, or with [axis.steps]",
     },
     Need {
         block: "drive",
         others: &["pwm"],
+        or: None,
         allowed: "a drive with its [axis.pwm], which commands it",
     },
     Need {
         block: "controller",
         others: &["encoder", "pwm", "drive"],
+        or: None,
         allowed: "a controller with [axis.encoder], [axis.pwm] and [axis.drive]: the position, the pins, and what they command",
+    },
+    Need {
+        block: "steps",
+        others: &["limits"],
+        or: None,
+        allowed: "steps with [axis.limits], whose velocity is their largest rate",
+    },
+    Need {
+        block: "stepper",
+        others: &["steps"],
+        or: None,
+        allowed: "a stepper motor with [axis.steps], which turn its field",
     },
     Need {
         block: "error_table",
         others: &["controller"],
-        allowed: "an error table with [axis.controller], whose reference it corrects",
+        or: Some("steps"),
+        allowed: "an error table with [axis.controller] or [axis.steps], whose position it corrects",
     },
     Need {
         block: "trace",
         others: &["controller"],
-        allowed: "a trace with [axis.controller], whose loop it records",
+        or: Some("steps"),
+        allowed: "a trace with [axis.controller] or [axis.steps], whose signals it records",
     },
 ];
 
-/// Checks that every block finds the others that it cannot work without.
+/// The blocks that `[axis.steps]` replaces.
+pub(super) const REPLACED_BY_STEPS: [&str; 4] = ["encoder", "pwm", "drive", "controller"];
+
+/// Checks that every block finds the others that it cannot work without, and none that it replaces.
 fn check_needs(axis: &Table<'_, '_>) {
-    for Need { block, others, allowed } in NEEDS {
+    for Need {
+        block,
+        others,
+        or,
+        allowed,
+    } in NEEDS
+    {
         let missing: Vec<String> = others
             .iter()
             .filter(|other| axis.lacks(other))
             .map(|other| format!("[axis.{other}]"))
             .collect();
-        if axis.has(block) && !missing.is_empty() {
+        if axis.has(block) && !missing.is_empty() && or.is_none_or(|or| axis.lacks(or)) {
             let missing = listed(&missing);
             let found = format!("[axis.{block}] without {missing}");
             let remedy = format!("add {missing}, or remove [axis.{block}]");
             axis.contradiction(block, found, allowed, remedy);
         }
+    }
+    for other in REPLACED_BY_STEPS
+        .into_iter()
+        .filter(|other| axis.has("steps") && axis.has(other))
+    {
+        let found = format!("[axis.{other}] beside [axis.steps]");
+        let allowed = "either encoder, PWM, drive and controller, or steps, whose drive has a loop of its own; an encoder that \
+                       only watches the steps is [axis.scale]";
+        axis.contradiction(other, found, allowed, format!("remove [axis.{other}], or [axis.steps]"));
     }
 }
 

@@ -243,6 +243,15 @@ pub(super) const KEYS: &[Key] = &[
     )
     .rule("2^−8 to 255.99 counts; absent: 4 counts"),
 ];
+/// Keys about a loop, which an axis with steps does not have.
+const OF_A_LOOP: [&str; 6] = [
+    "following_error",
+    "saturation_s",
+    "encoder_lost_s",
+    "encoder_lost_command",
+    "direct_duty",
+    "direct_hold_s",
+];
 /// Number of keys, from the first one, that limit moves.
 const OF_MOVES: usize = 4;
 
@@ -269,7 +278,7 @@ pub(super) fn read(
         velocity: quantity("velocity"),
         acceleration: quantity("acceleration"),
         jerk: quantity("jerk"),
-        travel: read_travel(table, word, unit, axis.has("controller")),
+        travel: read_travel(table, word, unit, axis.has("controller") || axis.has("steps")),
         soft_limits_after_homing: table.boolean("soft_limits_after_homing").unwrap_or(false),
         stop_deceleration: quantity("stop_deceleration"),
         following_error: quantity("following_error"),
@@ -297,9 +306,18 @@ fn check_needs(axis: &Table<'_, '_>, table: &Table<'_, '_>) {
     let supervised = KEYS.iter().skip(OF_MOVES).map(|key| key.name);
     for key in supervised.filter(|key| table.has(key)) {
         // A misspelt table has been reported already.
-        if axis.lacks("controller") {
-            let allowed = format!("{key} on an axis with [axis.controller], which has a supervisor");
+        if axis.lacks("controller") && axis.lacks("steps") {
+            let or = if OF_A_LOOP.contains(&key) {
+                ""
+            } else {
+                " or [axis.steps]"
+            };
+            let allowed = format!("{key} on an axis with [axis.controller]{or}, which has a supervisor");
             need(table, key, "[axis.controller]", allowed);
+        } else if OF_A_LOOP.contains(&key) && axis.has("steps") {
+            let found = format!("{key} with [axis.steps]");
+            let allowed = format!("{key} on an axis with [axis.controller], whose loop it is about");
+            table.contradiction(key, found, allowed, format!("remove `{key}`"));
         } else if key == "deviation" && axis.lacks("scale") {
             let allowed = "deviation on an axis with [axis.scale], from which the motor may deviate";
             need(table, key, "[axis.scale]", allowed.to_owned());

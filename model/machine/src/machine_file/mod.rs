@@ -52,6 +52,8 @@ mod scale;
 mod schema;
 mod shaper;
 mod stage;
+mod stepper;
+mod steps;
 mod table;
 mod trace;
 
@@ -71,6 +73,8 @@ pub use pwm::{PwmMode, PwmSection};
 pub use scale::{Scale, ScaleUse};
 pub use schema::schema;
 pub use stage::StageSection;
+pub use stepper::StepperSection;
+pub use steps::StepsSection;
 pub use trace::TraceSection;
 
 use std::cell::RefCell;
@@ -227,7 +231,7 @@ pub struct AxisSection {
     pub name: String,
     /// Unit of the axis's figures in the file; the values here are in m, rad and s.
     pub unit: AxisUnit,
-    /// Encoder counts per m or rad.
+    /// Encoder counts, or steps, per m or rad.
     pub counts_per_unit: f64,
     /// Whether the position wraps modulo `2^command_bits`, as on a rotary axis without end stops.
     pub modulo: bool,
@@ -248,20 +252,24 @@ pub struct AxisSection {
     pub drive: Option<Drive>,
     /// `[axis.controller]`; only with encoder, PWM and drive.
     pub controller: Option<Controller>,
+    /// `[axis.steps]`; only without encoder, PWM, drive and controller, and with limits.
+    pub steps: Option<StepsSection>,
+    /// `[axis.stepper]`; only with steps.
+    pub stepper: Option<StepperSection>,
     /// `[axis.limits]`.
     pub limits: Option<LimitsSection>,
-    /// `[axis.scale]`; only with an encoder.
+    /// `[axis.scale]`; only with an encoder or steps.
     pub scale: Option<Scale>,
-    /// `[axis.error_table]`; only with a controller.
+    /// `[axis.error_table]`; only with a controller or steps.
     pub error_table: Option<ErrorTableSection>,
-    /// `[axis.trace]`; only with a controller.
+    /// `[axis.trace]`; only with a controller or steps.
     pub trace: Option<TraceSection>,
 }
 
 impl AxisSection {
     /// Whether the axis has more than a shaper.
     pub fn has_loop(&self) -> bool {
-        self.encoder.is_some() || self.pwm.is_some() || self.controller.is_some()
+        self.encoder.is_some() || self.pwm.is_some() || self.controller.is_some() || self.steps.is_some()
     }
 
     /// Counts per m or rad of the counter that the position loop runs on: the encoder's, or the scale's where that is

@@ -102,7 +102,8 @@ fn allowed(key: &Key) -> String {
         .filter(|need| matches!(key.values, Values::Table(_)) && need.block == key.name);
     let needs = needs.map(|need| {
         let others: Vec<String> = need.others.iter().map(|other| format!("`[axis.{other}]`")).collect();
-        format!("needs {}", others.join(", "))
+        let or = need.or.map_or_else(String::new, |or| format!(" or `[axis.{or}]`"));
+        format!("needs {}{or}", others.join(", "))
     });
     let parts = [values(key.values), key.rule.to_owned()].into_iter().chain(needs);
     let parts: Vec<String> = parts.filter(|part| !part.is_empty()).collect();

@@ -5,7 +5,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::axis::NEEDS;
+use super::axis::{NEEDS, Need, REPLACED_BY_STEPS};
 use super::key::{Default, Key, Values};
 use super::machine::KEYS;
 use super::names::{MAX_NAME_LENGTH, NAME_RULE};
@@ -37,7 +37,7 @@ fn table(keys: &[Key]) -> Map<String, Value> {
         schema.insert("required".to_owned(), json!(required));
     }
     let needs = NEEDS.iter().filter(|need| properties.contains_key(need.block));
-    let needs: Map<String, Value> = needs.map(|need| (need.block.to_owned(), json!(need.others))).collect();
+    let needs: Map<String, Value> = needs.map(|need| (need.block.to_owned(), of_need(need))).collect();
     let needed = keys
         .iter()
         .filter_map(|key| Some((key.needed_by?.to_owned(), json!([key.name]))));
@@ -54,6 +54,18 @@ fn table(keys: &[Key]) -> Map<String, Value> {
     schema.insert("additionalProperties".to_owned(), json!(false));
     schema.insert("properties".to_owned(), Value::Object(properties));
     schema
+}
+
+/// Returns what a block requires of the other tables of its axis.
+fn of_need(need: &Need) -> Value {
+    if need.block == "steps" {
+        let replaced = REPLACED_BY_STEPS.map(|block| json!({ "required": [block] }));
+        return json!({ "required": need.others, "not": { "anyOf": replaced } });
+    }
+    match need.or {
+        None => json!(need.others),
+        Some(or) => json!({ "anyOf": [{ "required": need.others }, { "required": [or] }] }),
+    }
 }
 
 /// Returns the schema of a table with this key and without the other ones in `all`. If no word of another key selects this one, `oneOf`

@@ -165,9 +165,21 @@ fn what_needs_another_block_says_which() {
     for line in keys {
         let key = line.split(' ').next().unwrap();
         let error = limits(line);
+        let of_a_loop = [
+            "following_error",
+            "saturation_s",
+            "encoder_lost_s",
+            "direct_duty",
+            "direct_hold_s",
+        ];
+        let or = if of_a_loop.contains(&key) {
+            ""
+        } else {
+            " or [axis.steps]"
+        };
         let expected = format!(
             "m.toml:16: axis.limits.{key} of axis x: found {key} without [axis.controller]; allowed: {key} on an axis with \
-             [axis.controller], which has a supervisor"
+             [axis.controller]{or}, which has a supervisor"
         );
         assert_eq!(error.to_string(), expected);
         let remedy = format!("add [axis.controller], or remove `{key}`");
@@ -185,10 +197,10 @@ fn what_needs_another_block_says_which() {
     case("travel = [-0.1, 0.1]\n", "", expected);
     let alone = |table: &str| wrong(&format!("{SMALL}{table}")).to_string();
     let expected = "m.toml:15: axis.trace of axis x: found [axis.trace] without [axis.controller]; allowed: a trace with \
-                    [axis.controller], whose loop it records";
+                    [axis.controller] or [axis.steps], whose signals it records";
     assert_eq!(alone("[axis.trace]\nsamples = 256\n"), expected);
     let expected = "m.toml:15: axis.scale of axis x: found [axis.scale] without [axis.encoder]; allowed: a scale with \
-                    [axis.encoder], the motor's, which it is compared with";
+                    [axis.encoder], the motor's, which it is compared with, or with [axis.steps]";
     assert_eq!(alone(scale), expected);
     let expected = "m.toml:18: axis.scale.use of axis x: found use = \"position\" without [axis.controller]; allowed: \
                     position on an axis with [axis.controller], whose loop it closes; else monitor";

@@ -15,5 +15,6 @@ mod prop;
 mod report;
 mod rules;
 mod schema;
+mod steps;
 mod units;
 mod values;

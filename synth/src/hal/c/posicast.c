@@ -158,7 +158,14 @@ static void show(uint32_t axis)
         return;
     *pin->pos_fb = now.position[axis] / counts;
     *pin->vel_fb = now.velocity[axis] * per_second;
-    *pin->following_error = (int32_t)IORD_POSICAST_AXIS_ERROR(0, axis) / 65536.0 / counts;
+#if POSICAST_LOOP_AXES
+    if (POSICAST_LOOP_AXES >> axis & 1u)
+        *pin->following_error = (int32_t)IORD_POSICAST_AXIS_ERROR(0, axis) / 65536.0 / counts;
+#endif
+#if POSICAST_STEPS_AXES
+    if (POSICAST_STEPS_AXES >> axis & 1u)
+        *pin->following_error = (int16_t)IORD_POSICAST_AXIS_OWED_STEPS(0, axis) / counts;
+#endif
     *pin->home = (status[axis] & POSICAST_AXIS_STATUS_LEVEL_HOME_MSK) != 0;
     *pin->limit_plus = (status[axis] & POSICAST_AXIS_STATUS_LEVEL_LIMIT_PLUS_N_MSK) == 0;
     *pin->limit_minus = (status[axis] & POSICAST_AXIS_STATUS_LEVEL_LIMIT_MINUS_N_MSK) == 0;

@@ -54,8 +54,9 @@ struct Mood {
 /// The pins of an axis.
 #[derive(Debug, Clone)]
 struct AxisPins {
-    /// Indices of A, B and Z of the encoder, and of the linear scale if there is one: it moves as the motor does.
-    encoders: [Vec<usize>; 2],
+    /// Indices of A, B and Z of the encoder, and of the linear scale if there is one: it moves as the motor does. An axis with steps
+    /// has only the index.
+    encoders: [[Option<usize>; 3]; 2],
     /// Indices of the limit switches, + and −.
     switches: [usize; 2],
     /// Indices of A's and B's high gate, of the drive's enable and of the brake's release among the outputs.
@@ -128,10 +129,7 @@ impl StageRandom {
         let ports = component.composition().ports();
         let input = |name: &str| place(ports, Direction::Input, name);
         let of_axis = |axis: &String| {
-            let encoder = |kind: &str| {
-                let pins = ["a", "b", "z"].map(|pin| input(&format!("{axis}_{kind}{pin}")));
-                pins.into_iter().flatten().collect()
-            };
+            let encoder = |kind: &str| ["a", "b", "z"].map(|pin| input(&format!("{axis}_{kind}{pin}")));
             let shown = ["a_high", "b_high", "drive_enable", "brake_release"];
             AxisPins {
                 encoders: [encoder(""), encoder("scale_")],
@@ -284,8 +282,8 @@ impl StageRandom {
             }
             let phase = axis.count & 3;
             let levels = [phase == 1 || phase == 2, phase >= 2, axis.count & 31 == 0];
-            for places in &axis.encoders {
-                for (place, level) in places.iter().zip(levels) {
+            for (place, level) in axis.encoders.iter().flat_map(|places| places.iter().zip(levels)) {
+                if let Some(place) = place {
                     inputs[*place] = level.into();
                 }
             }

@@ -17,8 +17,8 @@ const AFTER_A_CLEAR_CLOCKS: u32 = 5;
 #[derive(Debug, Clone)]
 pub(crate) struct ReadBack {
     rng: Xoshiro256PlusPlus,
-    /// Per axis, the offsets of address, command and word.
-    words: Vec<[u64; 3]>,
+    /// Of each axis that has them, its index, and the offsets of address, command and word.
+    words: Vec<(usize, [u64; 3])>,
     /// Mask of the random address bits: bank and written rows.
     places: u64,
 }
@@ -35,25 +35,28 @@ impl ReadBack {
     }
 
     fn new(map: &RegisterMap, axes: &[String], names: [&str; 3], places: u64, seed: u64) -> Self {
-        let of_axis = |axis: &String| {
+        let of_axis = |(index, axis): (usize, &String)| {
             let offset = |name| map.register(&format!("{axis}_{name}")).map(|found| found.offset.into());
             let [address, read, loaded] = names.map(offset);
-            Some([address?, read?, loaded?])
+            Some((index, [address?, read?, loaded?]))
         };
         Self {
             rng: Xoshiro256PlusPlus::seed_from_u64(seed),
-            words: axes.iter().filter_map(of_axis).collect(),
+            words: axes.iter().enumerate().filter_map(of_axis).collect(),
             places,
         }
     }
 
     /// Returns the registers that only this generator uses.
     pub(crate) fn own(&self) -> Vec<u64> {
-        self.words.iter().flat_map(|[_, own @ ..]| *own).collect()
+        self.words.iter().flat_map(|(_, [_, own @ ..])| *own).collect()
     }
 
     pub(crate) fn fill(&mut self, driver: &Driver, wild: bool, inputs: &mut [u64]) {
-        let axis = self.rng.random_range(0..self.words.len());
+        if self.words.is_empty() {
+            return;
+        }
+        let (axis, words) = self.words[self.rng.random_range(0..self.words.len())];
         let [pace, kind, data] = [50, 3, 1 << 10].map(|end| self.rng.random_range(0..end));
         let in_use = inputs[READ] != 0 || inputs[WRITE] != 0 || driver.writes(axis);
         // Random traffic writes settings and taps at the current address, which is not changed then.
@@ -61,7 +64,7 @@ impl ReadBack {
         if pace != 0 || in_use || moves_another {
             return;
         }
-        inputs[ADDRESS] = self.words[axis][kind];
+        inputs[ADDRESS] = words[kind];
         inputs[WRITE_DATA] = data as u64 & self.places;
         inputs[BYTE_ENABLE] = 0xf;
         let reads = kind == 2;

@@ -59,6 +59,12 @@ static inline int is_axis(const posicast_stage *stage, uint32_t axis)
     return axis < stage->axes;
 }
 
+/* Whether it is an axis with a controller. */
+static inline int has_loop(const posicast_stage *stage, uint32_t axis)
+{
+    return is_axis(stage, axis) && (POSICAST_LOOP_AXES >> axis & 1u) != 0;
+}
+
 static inline int are_axes(const posicast_stage *stage, uint32_t axes)
 {
     return axes != 0 && (axes & ~posicast_all_axes(stage)) == 0;

@@ -6,6 +6,7 @@ use std::f64::consts::TAU;
 
 use super::friction::{Slide, Sliding};
 use super::pins::Command;
+use super::stepper::Stepper;
 use super::two_mass::TwoMass;
 use crate::machine_file::{Drive, DriveMode};
 use crate::mechanics::{ScrewDrive, Stiction};
@@ -64,6 +65,7 @@ enum Kind {
         sliding: Sliding,
     },
     Screw(Box<TwoMass>),
+    Stepper(Stepper),
 }
 
 impl Driven {
@@ -92,6 +94,24 @@ impl Driven {
             cell_s,
             position,
             velocity: 0.0,
+        }
+    }
+
+    /// A drive with step inputs and its motor.
+    pub(super) fn of_stepper(stepper: Stepper, cell_s: f64, position: f64) -> Self {
+        Self {
+            kind: Kind::Stepper(stepper),
+            cell_s,
+            position,
+            velocity: 0.0,
+        }
+    }
+
+    /// Steps that the motor has lost out of these, in multiples of four full steps.
+    pub(super) fn lost_steps(&self, steps: i64) -> i64 {
+        match &self.kind {
+            Kind::Stepper(stepper) => stepper.lost_steps(steps, self.position),
+            _ => 0,
         }
     }
 
@@ -128,6 +148,7 @@ impl Driven {
             Kind::Velocity { velocity, .. } => velocity.state,
             Kind::Torque { current, .. } => current.state,
             Kind::Screw(two_mass) => two_mass.current_a(),
+            Kind::Stepper(_) => self.velocity,
         }
     }
 
@@ -136,6 +157,17 @@ impl Driven {
         let travel = match &mut self.kind {
             Kind::Screw(two_mass) => {
                 (self.position, self.velocity) = two_mass.cell(command);
+                return;
+            }
+            Kind::Stepper(stepper) => {
+                if command.released {
+                    (self.position, self.velocity) = stepper.cell(command, (self.position, self.velocity));
+                } else {
+                    self.velocity = 0.0;
+                }
+                if !command.enabled {
+                    stepper.disabled(command.steps, self.position);
+                }
                 return;
             }
             Kind::Velocity { full_scale, velocity } => {
@@ -184,6 +216,7 @@ mod tests {
 
     const ON: Command = Command {
         share: 0.5,
+        steps: 0,
         enabled: true,
         released: true,
     };

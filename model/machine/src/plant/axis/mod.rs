@@ -14,6 +14,9 @@
 //! | the encoder sees | `x`: the modes for which the shaper is designed are outside the loop | `y`: the modes are inside the loop |
 //! | friction | none: the drive overcomes it | viscous and Coulomb, on `x` |
 //!
+//! With `[axis.steps]` the pins are step lines, and the motor is that of `[axis.stepper]`, or is always at its steps; it drives the
+//! load as a velocity drive does.
+//!
 //! Vibration is always measured at the load. `docs/plant.md` has the reasons, and the idealisations.
 //!
 //! **Time** counts in clocks and is divided into cells of [`AxisPlant::cell_clocks`]. At the end of a cell the drive
@@ -58,6 +61,8 @@ mod figures;
 mod friction;
 mod modes;
 mod pins;
+mod step_lines;
+mod stepper;
 mod two_mass;
 
 pub use encoder::EncoderPins;
@@ -67,9 +72,11 @@ pub use pins::DrivePins;
 use self::drive::Driven;
 use self::encoder::Encoder;
 use self::modes::LoadModes;
-use self::pins::PinMean;
+use self::pins::{Command, PinMean};
+use self::step_lines::StepLines;
+use self::stepper::Stepper;
 use super::{Plant, PlantError};
-use crate::machine_file::{AxisSection, ClockSection, Drive, DriveMode};
+use crate::machine_file::{AxisSection, ClockSection, Drive, DriveMode, PwmSection, StepsSection};
 
 /// Longest cell of the time grid, s: short compared with a tick and with the period of any mode.
 const CELL_S: f64 = 2e-6;
@@ -114,7 +121,9 @@ pub enum Coordinate {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum AxisPlantError {
     /// A table of the axis is missing.
-    #[error("axis {axis} has no [axis.{table}]: a simulated axis needs [axis.pwm] and [axis.drive]; add it")]
+    #[error(
+        "axis {axis} has no [axis.{table}]: a simulated axis needs [axis.pwm] and [axis.drive], or [axis.steps]; add it"
+    )]
     Missing {
         /// Name of the axis.
         axis: String,
@@ -180,6 +189,30 @@ pub struct AxisMotion {
     pub drive: f64,
 }
 
+/// What the drive makes of its pins.
+#[derive(Debug, Clone, PartialEq)]
+enum DriveInput {
+    Pwm(PinMean),
+    Steps(StepLines),
+}
+
+impl DriveInput {
+    #[inline]
+    fn add(&mut self, pins: &DrivePins, clocks: u32) {
+        match self {
+            Self::Pwm(mean) => mean.add(pins, clocks),
+            Self::Steps(lines) => lines.add(pins, clocks),
+        }
+    }
+
+    fn take(&mut self) -> Command {
+        match self {
+            Self::Pwm(mean) => mean.take(),
+            Self::Steps(lines) => lines.take(),
+        }
+    }
+}
+
 /// The simulation of an axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AxisPlant {
@@ -187,7 +220,7 @@ pub struct AxisPlant {
     cell_s: f64,
     /// Clocks of the present cell that have passed.
     passed: u32,
-    pins: PinMean,
+    input: DriveInput,
     command: f64,
     driven: Driven,
     modes: LoadModes,
@@ -201,13 +234,18 @@ impl AxisPlant {
     /// direction the lines count.
     ///
     /// # Errors
-    /// [`AxisPlantError`] for an axis without PWM or drive, for invalid options, and for speeds above a count per
+    /// [`AxisPlantError`] for an axis without PWM and drive, or steps, for invalid options, and for speeds above a count per
     /// clock.
     pub fn new(axis: &AxisSection, clock: &ClockSection, options: &PlantOptions) -> Result<Self, AxisPlantError> {
         let name = || axis.name.clone();
         let missing = |table| AxisPlantError::Missing { axis: name(), table };
-        let pwm = axis.pwm.as_ref().ok_or_else(|| missing("pwm"))?;
-        let drive = axis.drive.as_ref().ok_or_else(|| missing("drive"))?;
+        let motor = match &axis.steps {
+            Some(steps) => Motor::Steps(steps),
+            None => Motor::Pwm(
+                axis.pwm.as_ref().ok_or_else(|| missing("pwm"))?,
+                axis.drive.as_ref().ok_or_else(|| missing("drive"))?,
+            ),
+        };
         let factor = options.frequency_factor;
         if !(factor > 0.0 && factor <= 10.0) {
             return Err(AxisPlantError::FrequencyFactor(factor));
@@ -216,24 +254,39 @@ impl AxisPlant {
         let scale = axis.scale.map(|scale| scale.counts_per_unit);
         let scales = [Some(axis.counts_per_unit), scale];
         for counts_per_unit in scales.into_iter().flatten() {
-            check(axis, drive, clock, counts_per_unit, options.position)?;
+            check(axis, &motor, clock, counts_per_unit, options.position)?;
         }
         let plant = Plant::of_axis(axis).map_err(|source| AxisPlantError::Modes { axis: name(), source })?;
-        let period_clocks = pwm.period_clocks(clock).max(1);
+        let period_clocks = match motor {
+            Motor::Pwm(pwm, _) => pwm.period_clocks(clock).max(1),
+            Motor::Steps(_) => clock.clocks_per_sample(),
+        };
         let cell_clocks = cell_clocks(clock, period_clocks);
         let cell_s = f64::from(cell_clocks) / clock.frequency_hz;
-        let stiff = matches!(drive.mode, DriveMode::Velocity { .. });
+        let stiff = match motor {
+            Motor::Pwm(_, drive) => matches!(drive.mode, DriveMode::Velocity { .. }),
+            Motor::Steps(_) => true,
+        };
         let encoder =
             |counts_per_unit, index_at| Encoder::new(counts_per_unit, cell_clocks, index_at, options.position);
         // If the machine file states that the wiring counts down, the hardware inverts it.
         let is_reversed = axis.encoder.as_ref().is_some_and(|encoder| encoder.invert);
         let is_scale_reversed = axis.scale.is_some_and(|scale| scale.invert);
         let has_index = axis.encoder.as_ref().is_some_and(|encoder| encoder.index);
-        let driven = Driven::new(drive, cell_s, options.position);
+        let driven = match motor {
+            Motor::Pwm(_, drive) => Driven::new(drive, cell_s, options.position),
+            Motor::Steps(_) => {
+                let stepper = Stepper::new(axis.stepper.as_ref(), axis.counts_per_unit, cell_s, options.position);
+                Driven::of_stepper(stepper, cell_s, options.position)
+            }
+        };
         // Motor and table with stick-slip friction contain their mode.
-        let screw = axis.mechanics.as_ref();
-        let (driven, plant) = match screw.and_then(|screw| screw.stiction.map(|stiction| (screw, stiction))) {
-            Some((screw, stiction)) => {
+        let screw = axis
+            .mechanics
+            .as_ref()
+            .and_then(|screw| Some((screw, screw.stiction?, motor.drive()?)));
+        let (driven, plant) = match screw {
+            Some((screw, stiction, drive)) => {
                 let softer = screw.with_frequency_factor(factor);
                 (
                     driven.with_stiction(drive, &softer, &stiction),
@@ -246,7 +299,13 @@ impl AxisPlant {
             cell_clocks,
             cell_s,
             passed: 0,
-            pins: PinMean::new(pwm.mode, pwm.active_low, cell_clocks, period_clocks / cell_clocks),
+            input: match motor {
+                Motor::Pwm(pwm, _) => {
+                    let cells = period_clocks / cell_clocks;
+                    DriveInput::Pwm(PinMean::new(pwm.mode, pwm.active_low, cell_clocks, cells))
+                }
+                Motor::Steps(steps) => DriveInput::Steps(StepLines::new(steps, cell_clocks)),
+            },
             command: 0.0,
             driven,
             modes: LoadModes::new(&plant.scaled(factor), cell_s, stiff).along(axis, factor, options.position),
@@ -270,7 +329,7 @@ impl AxisPlant {
         while left > 0 {
             let now = left.min(u64::from(self.cell_clocks - self.passed)) as u32;
             left -= u64::from(now);
-            self.pins.add(&pins, now);
+            self.input.add(&pins, now);
             self.passed += now;
             self.encoder.pass(self.passed);
             if let Some(scale) = &mut self.scale {
@@ -289,7 +348,7 @@ impl AxisPlant {
     }
 
     fn end_cell(&mut self) {
-        let command = self.pins.take();
+        let command = self.input.take();
         let before = self.driven.position;
         self.driven.cell(&command);
         self.modes
@@ -332,9 +391,13 @@ impl AxisPlant {
         u64::from(self.encoder.quiet_until().min(scale) - self.passed)
     }
 
-    /// The encoder's count, as a counter that missed nothing shows it, counted from the initial position.
+    /// The encoder's count, as a counter that missed nothing shows it, counted from the initial position; on an axis with
+    /// steps, those that the drive has taken.
     pub fn count(&self) -> i64 {
-        self.encoder.count()
+        match &self.input {
+            DriveInput::Pwm(_) => self.encoder.count(),
+            DriveInput::Steps(lines) => lines.steps(),
+        }
     }
 
     /// The scale's count, if there is a scale.
@@ -359,7 +422,31 @@ impl AxisPlant {
 
     /// Number of clocks in which both sides of a leg were on: a short circuit, which a PWM must never make.
     pub fn shorted_clocks(&self) -> u64 {
-        self.pins.shorted()
+        match &self.input {
+            DriveInput::Pwm(mean) => mean.shorted(),
+            DriveInput::Steps(_) => 0,
+        }
+    }
+
+    /// Whether the pins are step lines.
+    pub fn has_steps(&self) -> bool {
+        matches!(self.input, DriveInput::Steps(_))
+    }
+
+    /// Number of steps that came while the drive was disabled, which it does not make; 0 with a PWM.
+    pub fn ignored_steps(&self) -> u64 {
+        match &self.input {
+            DriveInput::Pwm(_) => 0,
+            DriveInput::Steps(lines) => lines.ignored_steps(),
+        }
+    }
+
+    /// Steps that the motor has lost, because it was pulled over: multiples of four full steps; 0 with a PWM.
+    pub fn lost_steps(&self) -> i64 {
+        match &self.input {
+            DriveInput::Pwm(_) => 0,
+            DriveInput::Steps(lines) => self.driven.lost_steps(lines.steps()),
+        }
     }
 }
 
@@ -370,10 +457,26 @@ fn cell_clocks(clock: &ClockSection, period_clocks: u32) -> u32 {
     (1..=longest).rev().find(divides).unwrap_or(1)
 }
 
+/// What moves an axis.
+#[derive(Clone, Copy)]
+enum Motor<'a> {
+    Pwm(&'a PwmSection, &'a Drive),
+    Steps(&'a StepsSection),
+}
+
+impl<'a> Motor<'a> {
+    fn drive(self) -> Option<&'a Drive> {
+        match self {
+            Self::Pwm(_, drive) => Some(drive),
+            Self::Steps(_) => None,
+        }
+    }
+}
+
 /// Checks that an encoder with this many counts per unit can follow the axis.
 fn check(
     axis: &AxisSection,
-    drive: &Drive,
+    motor: &Motor<'_>,
     clock: &ClockSection,
     counts_per_unit: f64,
     position: f64,
@@ -386,6 +489,10 @@ fn check(
             counts,
         });
     }
+    let Some(drive) = motor.drive() else {
+        // The step generator is far below a step per clock.
+        return Ok(());
+    };
     let (what, speed) = match drive.mode {
         DriveMode::Velocity { full_scale_velocity } => ("full scale", full_scale_velocity),
         DriveMode::Torque {

@@ -11,11 +11,11 @@ use crate::machine_file::PwmMode;
 /// The default has all pins low: the drive is disabled and the brake applied.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct DrivePins {
-    /// High side of leg A; in mode `direction` the PWM.
+    /// High side of leg A; in mode `direction` the PWM; on an axis with steps its first line.
     pub a_high: bool,
     /// Low side of leg A.
     pub a_low: bool,
-    /// High side of leg B; in mode `direction` the direction.
+    /// High side of leg B; in mode `direction` the direction; on an axis with steps its second line.
     pub b_high: bool,
     /// Low side of leg B.
     pub b_low: bool,
@@ -52,6 +52,8 @@ impl DrivePins {
 pub(super) struct Command {
     /// Mean command over the last period, as a fraction of full scale, −1 to 1.
     pub(super) share: f64,
+    /// Steps that the drive has taken since the start, up less down; 0 with a PWM.
+    pub(super) steps: i64,
     /// Whether the drive was enabled in every clock.
     pub(super) enabled: bool,
     /// Whether the brake was open in every clock.
@@ -111,6 +113,7 @@ impl PinMean {
         self.oldest = (self.oldest + 1) % self.cells.len();
         let command = Command {
             share: self.period as f64 / (all * self.cells.len() as i64) as f64,
+            steps: 0,
             enabled: self.enabled == all,
             released: self.released == all,
         };

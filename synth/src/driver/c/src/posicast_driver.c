@@ -10,6 +10,13 @@
 /* Number of ticks until the PWM has run for a whole period with a new duty. */
 #define SELF_TEST_TICKS 4u
 
+/* Only an axis with a controller has direct mode. */
+#if POSICAST_LOOP_AXES
+#define DIRECT_ENABLE POSICAST_AXIS_CONTROL_DIRECT_ENABLE_MSK
+#else
+#define DIRECT_ENABLE 0u
+#endif
+
 static void clear_faults(const posicast_stage *stage, uint32_t axis)
 {
     IOWR_POSICAST_AXIS_CLEAR_FAULTS(stage->base, axis, 0);
@@ -132,7 +139,7 @@ posicast_result posicast_switch_on(const posicast_stage *stage, uint32_t axes, u
     /* READY must see it low first, so that an axis whose fault is cleared does not switch on by itself. */
     for (axis = 0; axis < stage->axes; axis++) {
         if (has(off, axis))
-            set_control(stage, axis, POSICAST_AXIS_CONTROL_ENABLE_MSK | POSICAST_AXIS_CONTROL_DIRECT_ENABLE_MSK, 0);
+            set_control(stage, axis, POSICAST_AXIS_CONTROL_ENABLE_MSK | DIRECT_ENABLE, 0);
     }
     for (axis = 0; axis < stage->axes && result == POSICAST_OK; axis++) {
         if (has(off, axis))
@@ -158,7 +165,7 @@ posicast_result posicast_switch_off(const posicast_stage *stage, uint32_t axes, 
         return POSICAST_BAD_ARGUMENT;
     for (axis = 0; axis < stage->axes; axis++) {
         if (has(axes, axis))
-            set_control(stage, axis, POSICAST_AXIS_CONTROL_ENABLE_MSK | POSICAST_AXIS_CONTROL_DIRECT_ENABLE_MSK, 0);
+            set_control(stage, axis, POSICAST_AXIS_CONTROL_ENABLE_MSK | DIRECT_ENABLE, 0);
     }
     for (axis = 0; axis < stage->axes; axis++) {
         while (has(axes, axis)) {
@@ -359,6 +366,7 @@ const char *posicast_cause_name(uint32_t causes)
     return "none";
 }
 
+#if POSICAST_LOOP_AXES
 posicast_result posicast_self_test(const posicast_stage *stage, uint32_t axis, int32_t duty,
                                    posicast_self_test_clocks *counted)
 {
@@ -366,7 +374,7 @@ posicast_result posicast_self_test(const posicast_stage *stage, uint32_t axis, i
     posicast_result result = POSICAST_OK;
     uint32_t tick, clocks;
 
-    if (!is_axis(stage, axis))
+    if (!has_loop(stage, axis))
         return POSICAST_BAD_ARGUMENT;
     if (posicast_state(stage, axis) != POSICAST_AXIS_STATUS_STATE_READY)
         return POSICAST_WRONG_STATE;
@@ -384,6 +392,7 @@ posicast_result posicast_self_test(const posicast_stage *stage, uint32_t axis, i
     counted->a_low = FIELD(clocks, POSICAST_AXIS_SELF_TEST_SELF_TEST_LOW);
     return result;
 }
+#endif
 
 void posicast_enable_interrupts(const posicast_stage *stage, uint32_t interrupts)
 {

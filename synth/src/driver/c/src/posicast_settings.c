@@ -33,6 +33,7 @@ posicast_result posicast_scale_gain(uint32_t *word, uint16_t numerator, uint16_t
     return POSICAST_OK;
 }
 
+#if POSICAST_LOOP_AXES
 /* Waits until no commit is pending. */
 static posicast_result wait_for_commit(const posicast_stage *stage, posicast_patience *left)
 {
@@ -49,7 +50,7 @@ posicast_result posicast_load_settings(const posicast_stage *stage, uint32_t axi
     uint32_t row;
     posicast_result result;
 
-    if (!is_axis(stage, axis) || bank == 0 || bank > 2)
+    if (!has_loop(stage, axis) || bank == 0 || bank > 2)
         return POSICAST_BAD_ARGUMENT;
     if (FIELD(IORD_POSICAST_AXIS_LAW(stage->base, axis), POSICAST_AXIS_LAW_LAW_BANK) == bank ||
         IORD_POSICAST_STAGE_COMMIT(stage->base) != 0)
@@ -75,7 +76,7 @@ posicast_result posicast_use_settings(const posicast_stage *stage, uint32_t axis
     posicast_patience left = posicast_patience_for(stage, ticks);
     posicast_result result;
 
-    if (!is_axis(stage, axis) || bank > 2 || law > POSICAST_AXIS_LAW_PID)
+    if (!has_loop(stage, axis) || bank > 2 || law > POSICAST_AXIS_LAW_PID)
         return POSICAST_BAD_ARGUMENT;
     /* Writes are refused while a commit is pending, also one of another axis. */
     result = wait_for_commit(stage, &left);
@@ -93,7 +94,7 @@ posicast_result posicast_read_settings(const posicast_stage *stage, uint32_t axi
     posicast_patience left = posicast_patience_for(stage, ticks);
     uint32_t row;
 
-    if (!is_axis(stage, axis) || bank > 2)
+    if (!has_loop(stage, axis) || bank > 2)
         return POSICAST_BAD_ARGUMENT;
     for (row = 0; row < POSICAST_SETTINGS; row++) {
         posicast_result result;
@@ -113,3 +114,4 @@ posicast_result posicast_read_settings(const posicast_stage *stage, uint32_t axi
     settings->law = FIELD(IORD_POSICAST_AXIS_LAW(stage->base, axis), POSICAST_AXIS_LAW);
     return POSICAST_OK;
 }
+#endif
