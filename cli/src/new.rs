@@ -44,9 +44,12 @@ pub(crate) struct Args {
 #[derive(clap::Args)]
 #[group(multiple = false)]
 pub(crate) struct KindFlags {
-    /// 3D printer: two belt axes without encoders
+    /// 3D printer: two belt axes with stepper motors, shaped steps out
     #[arg(long)]
     printer: bool,
+    /// CNC router: three screw axes with stepper motors, shaped steps out
+    #[arg(long)]
+    cnc: bool,
     /// Gantry or XY stage: two linear axes with encoder, drive and controller
     #[arg(long)]
     gantry: bool,
@@ -62,6 +65,7 @@ impl KindFlags {
     pub(crate) fn kind(&self) -> Option<MachineKind> {
         let flags = [
             (self.printer, MachineKind::Printer),
+            (self.cnc, MachineKind::Cnc),
             (self.gantry, MachineKind::Gantry),
             (self.joint, MachineKind::Joint),
             (self.crane, MachineKind::Crane),

@@ -11,5 +11,6 @@ mod stage_guards;
 mod stage_hold;
 mod stage_range;
 mod stage_run;
+mod stage_steps;
 mod support;
 mod wrong_sign;

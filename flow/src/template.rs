@@ -7,8 +7,10 @@ use std::path::Path;
 /// Kind of machine that a template is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MachineKind {
-    /// Two belt axes without encoders.
+    /// Two belt axes with stepper motors.
     Printer,
+    /// Three screw axes with stepper motors.
+    Cnc,
     /// Two linear axes with encoder, drive and controller.
     Gantry,
     /// A rotary axis with encoder, drive and controller.
@@ -19,8 +21,9 @@ pub enum MachineKind {
 
 impl MachineKind {
     /// Every kind with its name.
-    pub const ALL: [(Self, &'static str); 4] = [
+    pub const ALL: [(Self, &'static str); 5] = [
         (Self::Printer, "printer"),
+        (Self::Cnc, "cnc"),
         (Self::Gantry, "gantry"),
         (Self::Joint, "joint"),
         (Self::Crane, "crane"),
@@ -29,6 +32,7 @@ impl MachineKind {
     fn template(self) -> &'static str {
         match self {
             Self::Printer => include_str!("template/printer.toml"),
+            Self::Cnc => include_str!("template/cnc.toml"),
             Self::Gantry => include_str!("template/gantry.toml"),
             Self::Joint => include_str!("template/joint.toml"),
             Self::Crane => include_str!("template/crane.toml"),
@@ -38,7 +42,8 @@ impl MachineKind {
     /// Description of the machine.
     pub fn about(self) -> &'static str {
         match self {
-            Self::Printer => "a 3D printer with two belt axes, shapers only",
+            Self::Printer => "a 3D printer with two belt axes and step lines",
+            Self::Cnc => "a CNC router with three screw axes and step lines",
             Self::Gantry => "a gantry or XY stage with two linear axes in closed loop",
             Self::Joint => "a rotary joint in closed loop",
             Self::Crane => "a crane with a swinging load, shaper only",
@@ -53,7 +58,7 @@ impl MachineKind {
     /// Unit of its axes.
     pub fn unit(self) -> AxisUnit {
         match self {
-            Self::Printer | Self::Gantry | Self::Crane => AxisUnit::Metre,
+            Self::Printer | Self::Cnc | Self::Gantry | Self::Crane => AxisUnit::Metre,
             Self::Joint => AxisUnit::Radian,
         }
     }

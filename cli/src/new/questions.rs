@@ -208,7 +208,7 @@ mod tests {
     fn invalid_answers_are_reported_and_asked_again() {
         let (draft, said) = answered("lathe\ncrane\nwire\nhoist\nkm\nmm\nmany\n20\n1e9\n0.25\n1.5\n0.02\n");
         for message in [
-            "found `lathe`; allowed: printer, gantry, joint, crane",
+            "found `lathe`; allowed: printer, cnc, gantry, joint, crane",
             "name: found \"wire\"; allowed: [a-z]",
             "found `km`; allowed: m, mm, um",
             "found `many`; allowed: a number",

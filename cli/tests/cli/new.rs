@@ -139,7 +139,7 @@ fn standard_output_takes_the_file_alone() {
     let output = new(folder.path(), &["--printer", "-"]);
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(
-        text.starts_with("#:schema") && text.trim_end().ends_with("travel = [0.0, 0.21]"),
+        text.starts_with("#:schema") && text.trim_end().ends_with("watchdog_s = 0.5"),
         "{text}"
     );
     assert!(String::from_utf8(output.stderr).unwrap().contains("next: "));
