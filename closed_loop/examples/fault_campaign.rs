@@ -4,7 +4,7 @@
 //! cargo run --release --example fault_campaign -- --cases 10000 --seed 1 --rtl 44
 //! ```
 //!
-//! `--rtl N` runs N more cases with the Verilated stage beside the model, compared in every clock. `--first N` begins
+//! `--machine steps` takes the machine with step inputs in place of that with loops. `--rtl N` runs N more cases with the Verilated stage beside the model, compared in every clock. `--first N` begins
 //! with this case, to repeat one that failed. Exit status 1 if a case did not meet its expectation.
 
 use std::io::Write;
@@ -17,9 +17,10 @@ use posicast_testbench::blocks::Sources;
 use posicast_testbench::component::ComponentBlock;
 use posicast_testbench::lockstep::Device;
 
-const USAGE: &str = "fault_campaign [--cases N] [--first N] [--seed S] [--rtl N] [--threads N]";
+const USAGE: &str = "fault_campaign [--machine loops|steps] [--cases N] [--first N] [--seed S] [--rtl N] [--threads N]";
 
 struct Options {
+    steps: bool,
     cases: u64,
     first: u64,
     seed: u64,
@@ -30,6 +31,7 @@ struct Options {
 impl Options {
     fn parse(mut arguments: impl Iterator<Item = String>) -> Result<Self, String> {
         let mut options = Self {
+            steps: false,
             cases: 10_000,
             first: 0,
             seed: 1,
@@ -37,7 +39,16 @@ impl Options {
             threads: thread::available_parallelism().map_or(1, usize::from),
         };
         while let Some(name) = arguments.next() {
-            let value = arguments.next().and_then(|value| value.parse::<u64>().ok());
+            let value = arguments.next();
+            if name == "--machine" {
+                options.steps = match value.as_deref() {
+                    Some("loops") => false,
+                    Some("steps") => true,
+                    _ => return Err(format!("--machine needs `loops` or `steps`\n{USAGE}")),
+                };
+                continue;
+            }
+            let value = value.and_then(|value| value.parse::<u64>().ok());
             let value = value.ok_or_else(|| format!("{name} needs a whole number\n{USAGE}"))?;
             match name.as_str() {
                 "--cases" => options.cases = value,
@@ -53,7 +64,7 @@ impl Options {
 }
 
 fn campaigns(options: &Options) -> Result<Vec<FaultReport>, Box<dyn std::error::Error>> {
-    let bed = Bed::new()?;
+    let bed = if options.steps { Bed::with_steps()? } else { Bed::new()? };
     let numbers = options.first..options.first.saturating_add(options.cases);
     let mut reports = vec![run(&bed, numbers, options.seed, options.threads)?];
     if options.rtl > 0 {

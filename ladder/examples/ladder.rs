@@ -279,13 +279,26 @@ fn tests(name: &str, filters: &[&str], cases: Option<u64>) -> Result<Rung, Box<d
     ))
 }
 
-/// Runs the fault campaign of a stage.
+/// Runs the fault campaign of a stage with loops, and of one with steps.
 fn faults(cases: u64) -> Result<Rung, Box<dyn Error>> {
     let began = Instant::now();
-    let mut command = Command::new(programs()?.0.join("fault_campaign"));
-    let with_rtl = cases.min(36);
-    let (_, succeeded) = run(command.args(["--cases", &cases.to_string(), "--rtl", &with_rtl.to_string()]))?;
-    let rows = [("stage".to_owned(), vec![cases, with_rtl])];
+    let mut succeeded = true;
+    let mut rows = Vec::new();
+    for (machine, name, share) in [("loops", "stage", 1), ("steps", "stage with steps", 4)] {
+        let cases = (cases / share).max(1);
+        let with_rtl = cases.min(36);
+        let mut command = Command::new(programs()?.0.join("fault_campaign"));
+        command.args([
+            "--machine",
+            machine,
+            "--cases",
+            &cases.to_string(),
+            "--rtl",
+            &with_rtl.to_string(),
+        ]);
+        succeeded &= run(&mut command)?.1;
+        rows.push((name.to_owned(), vec![cases, with_rtl]));
+    }
     Ok(Rung::new(
         "fault campaign",
         &["faults", "with RTL"],

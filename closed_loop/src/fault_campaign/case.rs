@@ -4,7 +4,7 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::expectation::{Hit, Lasts};
-use super::kind::{FaultRow, TABLE};
+use super::kind::FaultRow;
 
 /// Largest distance of a move in counts; the smallest is half of it.
 const MOST_COUNTS: i64 = 300;
@@ -17,7 +17,7 @@ pub struct Case {
     /// Number of the case in the campaign.
     pub number: u64,
     /// Kind of the fault, with its expectation.
-    pub row: &'static FaultRow,
+    pub row: FaultRow,
     /// Axes that are hit, a bit each.
     pub axes: u32,
     /// Distance of the move of each axis in counts.
@@ -35,9 +35,9 @@ pub struct Case {
 }
 
 impl Case {
-    /// The case with this number; the kinds alternate.
-    pub fn new(number: u64, seed: u64) -> Self {
-        let row = &TABLE[(number % TABLE.len() as u64) as usize];
+    /// The case with this number; the kinds of `rows`, which has at least one, alternate.
+    pub fn new(rows: &[FaultRow], number: u64, seed: u64) -> Self {
+        let row = rows[(number % rows.len() as u64) as usize];
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed ^ number.wrapping_mul(0x9e37_79b9_7f4a_7c15));
         let expects = &row.expects;
         let size = rng.random_range(MOST_COUNTS / 2..=MOST_COUNTS);

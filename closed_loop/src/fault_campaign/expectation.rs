@@ -53,6 +53,8 @@ pub enum Seen {
     Segments,
     /// A flag of the controller is set: e was saturated to its word.
     Range,
+    /// The step generator has stopped.
+    StepsTripped,
 }
 
 impl Seen {
@@ -61,6 +63,8 @@ impl Seen {
     pub(super) fn clocks(self) -> u64 {
         match self {
             Self::Segments | Self::Range => 2,
+            // A cause that acts at once.
+            Self::StepsTripped => 1,
             Self::FollowingError | Self::Deviation | Self::Stuck | Self::Lost | Self::SoftLimit => WATCH_CLOCKS.into(),
         }
     }

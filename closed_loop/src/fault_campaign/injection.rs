@@ -6,7 +6,7 @@ use posicast_machine::plant::axis::EncoderPins;
 
 use super::case::Case;
 use super::kind::FaultKind;
-use crate::stage_bench::{StageBench, Wire};
+use crate::stage_bench::{StageBench, StepWire, Wire};
 use posicast_testbench::Error;
 
 /// Number of ticks of the watchdog.
@@ -36,7 +36,7 @@ pub(super) fn last_entry(case: &Case, axis: usize) -> Option<Entry> {
     let side = case.counts[axis].signum() as i32;
     match case.row.kind {
         FaultKind::Overflow => Some(OVERFLOWING),
-        FaultKind::OutOfRange => Some(Entry {
+        FaultKind::OutOfRange | FaultKind::TooFast => Some(Entry {
             ticks: 1,
             motion: EntryMotion::Point(Point {
                 position: (side * FAR_COUNTS) << 8,
@@ -112,24 +112,26 @@ fn begin_at(bench: &mut StageBench, case: &Case, axis: usize, name: &str) -> Res
         FaultKind::EncoderDisconnected => bench.force_encoder(axis, Some(EncoderPins::default())),
         FaultKind::EncoderLineStuck => bench.break_wire(axis, Some(stuck(case, lines))),
         FaultKind::EncoderLineStuckUnwatched => {
-            bench.write(&register("following_error_limit"), 0)?;
+            without_following_error(bench, name)?;
             bench.break_wire(axis, Some(stuck(case, lines)));
         }
         FaultKind::EncoderReversed => bench.break_wire(axis, Some(Wire::AInverted)),
         FaultKind::EncoderReversedUnwatched => {
-            bench.write(&register("following_error_limit"), 0)?;
+            without_following_error(bench, name)?;
             bench.break_wire(axis, Some(Wire::AInverted));
         }
         FaultKind::EncoderReversedInHold => reverse_and_push(bench, case, axis),
         FaultKind::EncoderReversedInHoldUnwatched => {
-            bench.write(&register("following_error_limit"), 0)?;
+            without_following_error(bench, name)?;
             reverse_and_push(bench, case, axis);
         }
         FaultKind::ScaleStuck => bench.force_scale(axis, Some(bench.plant(axis).scale())),
         FaultKind::ScaleIllegal => bench.force_scale(axis, Some(inverted(bench.plant(axis).scale()))),
+        FaultKind::StepsCut => bench.break_step_wire(axis, Some(StepWire::Cut)),
+        FaultKind::StepsReversed => bench.break_step_wire(axis, Some(StepWire::Reversed)),
         FaultKind::Jam => bench.jam(axis, true),
         FaultKind::JamWithoutFollowingError => {
-            bench.write(&register("following_error_limit"), 0)?;
+            without_following_error(bench, name)?;
             bench.jam(axis, true);
         }
         FaultKind::HostSilent => {
@@ -138,9 +140,9 @@ fn begin_at(bench: &mut StageBench, case: &Case, axis: usize, name: &str) -> Res
             bench.write(&register("kick"), KICK ^ (1 << (case.choice % 32)))?;
         }
         FaultKind::Flush => bench.write(&register("flush"), 0)?,
-        FaultKind::OutOfRange => bench.write(&register("following_error_limit"), 0)?,
+        FaultKind::OutOfRange | FaultKind::TooFast => without_following_error(bench, name)?,
         FaultKind::Overflow => {
-            bench.write(&register("following_error_limit"), 0)?;
+            without_following_error(bench, name)?;
             bench.write(&register("stop_deceleration"), 0)?;
         }
         FaultKind::Malformed => malformed(bench, name)?,
@@ -181,6 +183,15 @@ fn begin_at(bench: &mut StageBench, case: &Case, axis: usize, name: &str) -> Res
             bench.write(&register("direct"), case.choice & 0x1_ffff)?;
         }
         _ => {}
+    }
+    Ok(())
+}
+
+/// Switches the check of the following error off, if the axis has one.
+fn without_following_error(bench: &mut StageBench, name: &str) -> Result<(), Error> {
+    let register = format!("{name}_following_error_limit");
+    if bench.has(&register) {
+        bench.write(&register, 0)?;
     }
     Ok(())
 }
@@ -239,6 +250,7 @@ pub(super) fn end(bench: &mut StageBench, case: &Case, way_back: bool) -> Result
         }
         bench.force_encoder(axis, None);
         bench.break_wire(axis, None);
+        bench.break_step_wire(axis, None);
         bench.force_scale(axis, None);
         bench.jam(axis, false);
         match kind {

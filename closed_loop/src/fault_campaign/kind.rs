@@ -53,10 +53,13 @@ pub enum FaultKind {
     ClearFaults,
     StartAgain,
     DirectMode,
+    StepsCut,
+    StepsReversed,
+    TooFast,
 }
 
 /// A row of the table.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FaultRow {
     /// Kind of the fault.
     pub kind: FaultKind,

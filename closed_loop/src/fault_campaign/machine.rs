@@ -16,6 +16,8 @@ use posicast_machine::plan::design_machine;
 use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
 
 use super::CampaignError;
+use super::kind::{FaultRow, TABLE};
+use super::steps;
 use crate::stage_bench::StageBench;
 use posicast_testbench::lockstep::Device;
 
@@ -47,6 +49,8 @@ pub struct Bed {
     pub stage: MachineStage,
     /// Its blocks and registers.
     pub component: Component,
+    /// The kinds of faults that are injected.
+    pub rows: Vec<FaultRow>,
 }
 
 impl Bed {
@@ -89,6 +93,18 @@ impl Bed {
             machine,
             stage,
             component,
+            rows: TABLE.to_vec(),
+        })
+    }
+
+    /// Makes the same machine with step inputs in place of its loops, and the faults of such a machine.
+    ///
+    /// # Errors
+    /// Those of [`Bed::of`].
+    pub fn with_steps() -> Result<Self, CampaignError> {
+        Ok(Self {
+            rows: steps::rows(),
+            ..Self::of(steps::change)?
         })
     }
 

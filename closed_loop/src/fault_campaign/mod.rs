@@ -31,6 +31,7 @@ mod machine;
 mod observation;
 mod report;
 mod run;
+mod steps;
 
 pub use case::Case;
 pub use expectation::{Due, Expectation, Hit, Lasts, Others, Reaction, Seen};
@@ -76,14 +77,17 @@ pub enum CampaignError {
 /// # Errors
 /// [`CampaignError`] of the first case that could not be run.
 pub fn run(bed: &Bed, cases: Range<u64>, seed: u64, threads: usize) -> Result<FaultReport, CampaignError> {
-    let (next, report) = (AtomicU64::new(cases.start), Mutex::new(FaultReport::new(seed)));
+    let (next, report) = (
+        AtomicU64::new(cases.start),
+        Mutex::new(FaultReport::new(&bed.rows, seed)),
+    );
     let work = || -> Result<(), CampaignError> {
         loop {
             let number = next.fetch_add(1, Ordering::Relaxed);
             if number >= cases.end {
                 return Ok(());
             }
-            let outcome = run_case(bed, &Case::new(number, seed), None)?;
+            let outcome = run_case(bed, &Case::new(&bed.rows, number, seed), None)?;
             report.lock().unwrap_or_else(PoisonError::into_inner).add(&outcome);
         }
     };
@@ -106,9 +110,9 @@ pub fn run_with_rtl(
     seed: u64,
     mut device: impl FnMut() -> Result<Box<dyn Device>, Error>,
 ) -> Result<FaultReport, CampaignError> {
-    let mut report = FaultReport::new(seed);
+    let mut report = FaultReport::new(&bed.rows, seed);
     for number in cases {
-        report.add(&run_case(bed, &Case::new(number, seed), Some(device()?))?);
+        report.add(&run_case(bed, &Case::new(&bed.rows, number, seed), Some(device()?))?);
     }
     Ok(report)
 }

@@ -8,24 +8,25 @@ use super::machine::{LOST_TICKS, SATURATION_TICKS};
 use crate::stage_bench::{Probe, StageBench};
 use posicast_testbench::Error;
 
-/// Nets that are read.
+/// Nets that are read; an axis with steps has none of a controller, and they count as 0.
 struct Probes {
     state: Probe,
     causes: Probe,
-    error: Probe,
-    error_limit: Probe,
+    error: Option<Probe>,
+    error_limit: Option<Probe>,
     deviation: Probe,
     shaped: Probe,
     soft_plus: Probe,
     soft_minus: Probe,
     count: Probe,
-    command: Probe,
+    command: Option<Probe>,
     command_position: Probe,
-    limited_ticks: Probe,
+    limited_ticks: Option<Probe>,
     underrun: Probe,
     overflow: Probe,
-    cut_high: Probe,
-    cut_low: Probe,
+    cut_high: Option<Probe>,
+    cut_low: Option<Probe>,
+    steps_tripped: Option<Probe>,
 }
 
 /// An axis in the clock in which its state first differed from that at the fault.
@@ -50,6 +51,7 @@ pub(super) struct Observation {
     lost_command: u32,
     deviation_limit: u32,
     still: Still,
+    pulsing: bool,
     /// Command at the last tick, and its change in each of the last two.
     command: i32,
     travel: [u32; 2],
@@ -57,7 +59,7 @@ pub(super) struct Observation {
     pub(super) change: Option<Change>,
     /// Clock in which the detection condition first held.
     pub(super) seen: Option<u64>,
-    /// Last clock with a gate on.
+    /// Last clock with a gate on, or in which a step began.
     pub(super) last_gate: u64,
     /// First clock with the drive disabled.
     pub(super) drive_off: Option<u64>,
@@ -91,24 +93,26 @@ impl Observation {
             probes: Probes {
                 state: probe("state")?,
                 causes: probe("causes")?,
-                error: probe("error")?,
-                error_limit: probe("following_error_limit")?,
+                error: probe("error").ok(),
+                error_limit: probe("following_error_limit").ok(),
                 deviation: probe("deviation")?,
                 shaped: probe("shaped_position")?,
                 soft_plus: probe("soft_limit_plus")?,
                 soft_minus: probe("soft_limit_minus")?,
                 count: probe("count")?,
-                command: probe("command")?,
+                command: probe("command").ok(),
                 command_position: probe("command_position")?,
-                limited_ticks: probe("limited_ticks")?,
+                limited_ticks: probe("limited_ticks").ok(),
                 underrun: probe("segments_underrun")?,
                 overflow: probe("segments_overflow")?,
-                cut_high: probe("controller_saturated_high")?,
-                cut_low: probe("controller_saturated_low")?,
+                cut_high: probe("controller_saturated_high").ok(),
+                cut_low: probe("controller_saturated_low").ok(),
+                steps_tripped: probe("steps_tripped").ok(),
             },
             lost_command: watched.lost_command,
             deviation_limit: watched.deviation_limit,
             still: Still::default(),
+            pulsing: false,
             command: bench.at(probe("command_position")?) as u32 as i32,
             travel: [0; 2],
             change: None,
@@ -163,24 +167,26 @@ impl Observation {
 
     /// Checks the detection condition, which for most monitors counts at ticks only.
     pub(super) fn look_for(&mut self, bench: &StageBench, seen: Seen, tick: bool) {
-        let value = |probe| bench.at(probe);
-        let signed = |probe| bench.at(probe) as u32 as i32;
+        let value = |probe: Option<Probe>| probe.map_or(0, |probe| bench.at(probe));
+        let signed = |probe: Option<Probe>| value(probe) as u32 as i32;
         let size = |value: i32| (value ^ (value >> 31)) as u32;
         let probes = &self.probes;
-        let deviates = |deviation| {
-            self.deviation_limit != 0 && u64::from(size(signed(deviation))) > u64::from(self.deviation_limit)
+        let deviates = || {
+            self.deviation_limit != 0
+                && u64::from(size(signed(Some(probes.deviation)))) > u64::from(self.deviation_limit)
         };
         let is_stuck = value(probes.limited_ticks) >= SATURATION_TICKS || self.still.ticks >= LOST_TICKS;
         let is = match seen {
-            Seen::Segments => (value(probes.underrun) | value(probes.overflow)) != 0,
+            Seen::Segments => (value(Some(probes.underrun)) | value(Some(probes.overflow))) != 0,
+            Seen::StepsTripped => value(probes.steps_tripped) != 0,
             Seen::Range => (value(probes.cut_high) | value(probes.cut_low)) & 1 != 0,
             _ if !tick => false,
             Seen::FollowingError => u64::from(size(signed(probes.error))) > value(probes.error_limit),
-            Seen::Deviation => deviates(probes.deviation),
-            Seen::Lost => deviates(probes.deviation) || is_stuck,
+            Seen::Deviation => deviates(),
+            Seen::Lost => deviates() || is_stuck,
             Seen::SoftLimit => {
-                let shaped = signed(probes.shaped);
-                shaped > signed(probes.soft_plus) || shaped < signed(probes.soft_minus)
+                let shaped = signed(Some(probes.shaped));
+                shaped > signed(Some(probes.soft_plus)) || shaped < signed(Some(probes.soft_minus))
             }
             Seen::Stuck => is_stuck,
         };
@@ -188,7 +194,7 @@ impl Observation {
             self.seen.get_or_insert(bench.now());
         }
         if tick {
-            let (count, command) = (signed(probes.count), signed(probes.command));
+            let (count, command) = (signed(Some(probes.count)), signed(probes.command));
             let motion = count.wrapping_sub(self.still.count);
             let one_way = (command < 0) == self.still.backwards;
             let [backward, forward] = [motion < -4, motion >= 4];
@@ -212,7 +218,13 @@ impl Observation {
     /// Records, after some clocks, the levels of the pins in the last of them.
     pub(super) fn after(&mut self, bench: &StageBench) {
         let (pins, last) = (bench.pins(self.axis), bench.now() - 1);
-        if pins.a_high || pins.a_low || pins.b_high || pins.b_low {
+        // A pulse that has begun ends in its time: of steps, the beginning counts.
+        let begins = pins.a_high && !std::mem::replace(&mut self.pulsing, pins.a_high);
+        let on = match self.probes.steps_tripped {
+            Some(_) => begins,
+            None => pins.a_high || pins.a_low || pins.b_high || pins.b_low,
+        };
+        if on {
             self.last_gate = last;
         }
         if !pins.drive_enable {

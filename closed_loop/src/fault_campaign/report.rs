@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::kind::TABLE;
+use super::kind::FaultRow;
 use super::run::FaultOutcome;
 
 /// Number of failures that are shown in words.
@@ -27,23 +27,25 @@ pub struct KindFigures {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FaultReport {
     seed: u64,
+    rows: Vec<FaultRow>,
     kinds: Vec<KindFigures>,
     failures: Vec<String>,
 }
 
 impl FaultReport {
-    /// A report without cases.
-    pub(super) fn new(seed: u64) -> Self {
+    /// A report of these kinds of faults without cases.
+    pub(super) fn new(rows: &[FaultRow], seed: u64) -> Self {
         Self {
             seed,
-            kinds: vec![KindFigures::default(); TABLE.len()],
+            rows: rows.to_vec(),
+            kinds: vec![KindFigures::default(); rows.len()],
             failures: Vec::new(),
         }
     }
 
     /// Adds a case.
     pub(super) fn add(&mut self, outcome: &FaultOutcome) {
-        let place = (outcome.case.number % TABLE.len() as u64) as usize;
+        let place = (outcome.case.number % self.rows.len() as u64) as usize;
         let kind = &mut self.kinds[place];
         kind.cases += 1;
         kind.failed += u64::from(!outcome.failures.is_empty());
@@ -62,7 +64,7 @@ impl FaultReport {
         self.kinds.iter().map(|kind| kind.cases).sum()
     }
 
-    /// Figures per kind, in the order of [`TABLE`].
+    /// Figures per kind, in the order of the bed's rows.
     pub fn kinds(&self) -> &[KindFigures] {
         &self.kinds
     }
@@ -82,7 +84,7 @@ impl fmt::Display for FaultReport {
         )?;
         writeln!(f, "|---|---|---|---|---|---|")?;
         let shown = |figure: Option<u64>| figure.map_or_else(|| "–".to_owned(), |figure| figure.to_string());
-        for (row, kind) in TABLE.iter().zip(&self.kinds) {
+        for (row, kind) in self.rows.iter().zip(&self.kinds) {
             writeln!(
                 f,
                 "| {} | {} | {} | {} | {} | {} |",

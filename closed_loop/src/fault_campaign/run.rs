@@ -221,7 +221,7 @@ impl Running<'_> {
             let watched = &self.bed.stage.config.axes[axis].supervision;
             axes.push(Observation::new(&self.bench, axis, watched, from)?);
         }
-        if let FaultKind::Overflow | FaultKind::OutOfRange = self.case.row.kind {
+        if let FaultKind::Overflow | FaultKind::OutOfRange | FaultKind::TooFast = self.case.row.kind {
             return Ok(axes);
         }
         let whole = ticks * self.case.when / 10_000;
