@@ -20,6 +20,8 @@ pub struct FpgaBoard {
     pub oscillator_hz: u32,
     /// Voltage of the pins.
     pub volts: f64,
+    /// Voltage of the LED's pin.
+    pub led_volts: f64,
     /// The oscillator.
     pub clock: BoardPin,
     /// Serial line from the host.
@@ -80,6 +82,8 @@ pub enum FpgaFamily {
     Ice40,
     /// Lattice ECP5.
     Ecp5,
+    /// Gowin LittleBee and Arora.
+    Gowin,
 }
 
 impl FpgaFamily {
@@ -89,6 +93,7 @@ impl FpgaFamily {
         match self {
             Self::Ice40 => "pcf",
             Self::Ecp5 => "lpf",
+            Self::Gowin => "cst",
         }
     }
 
@@ -98,6 +103,7 @@ impl FpgaFamily {
         match self {
             Self::Ice40 => "bin",
             Self::Ecp5 => "bit",
+            Self::Gowin => "fs",
         }
     }
 }
@@ -115,6 +121,10 @@ pub enum BoardDevice {
     Lfe5u25f,
     /// ECP5 with 84,000 look-up tables.
     Lfe5u85f,
+    /// Gowin LittleBee with 8,640 look-up tables.
+    Gw1nr9c,
+    /// Gowin Arora with 20,736 look-up tables.
+    Gw2ar18c,
 }
 
 impl BoardDevice {
@@ -124,6 +134,7 @@ impl BoardDevice {
         match self {
             Self::Up5k | Self::Hx8k => FpgaFamily::Ice40,
             Self::Lfe5u12f | Self::Lfe5u25f | Self::Lfe5u85f => FpgaFamily::Ecp5,
+            Self::Gw1nr9c | Self::Gw2ar18c => FpgaFamily::Gowin,
         }
     }
 
@@ -136,10 +147,12 @@ impl BoardDevice {
             Self::Lfe5u12f => "LFE5U-12F",
             Self::Lfe5u25f => "LFE5U-25F",
             Self::Lfe5u85f => "LFE5U-85F",
+            Self::Gw1nr9c => "GW1NR-9C",
+            Self::Gw2ar18c => "GW2AR-18C",
         }
     }
 
-    /// The option of nextpnr that selects it.
+    /// The option of nextpnr that selects it; for Gowin the part after `--device`.
     #[must_use]
     pub fn nextpnr_option(self) -> &'static str {
         match self {
@@ -148,6 +161,8 @@ impl BoardDevice {
             Self::Lfe5u12f => "--12k",
             Self::Lfe5u25f => "--25k",
             Self::Lfe5u85f => "--85k",
+            Self::Gw1nr9c => "GW1NR-LV9QN88PC6/I5",
+            Self::Gw2ar18c => "GW2AR-LV18QN88C8/I7",
         }
     }
 
@@ -161,6 +176,16 @@ impl BoardDevice {
         }
     }
 
+    /// The name of the die in apycula's database; empty for other families.
+    #[must_use]
+    pub fn gowin_die(self) -> &'static str {
+        match self {
+            Self::Gw1nr9c => "GW1N-9C",
+            Self::Gw2ar18c => "GW2A-18C",
+            _ => "",
+        }
+    }
+
     /// Number of logic cells.
     #[must_use]
     pub fn logic_cells(self) -> u64 {
@@ -170,10 +195,12 @@ impl BoardDevice {
             // nextpnr uses the whole of a 12F.
             Self::Lfe5u12f | Self::Lfe5u25f => 24_288,
             Self::Lfe5u85f => 83_640,
+            Self::Gw1nr9c => 8640,
+            Self::Gw2ar18c => 20_736,
         }
     }
 
-    /// Number of block RAMs: of 4,096 bits in iCE40, of 18,432 bits in ECP5.
+    /// Number of block RAMs: of 4,096 bits in iCE40, of 18,432 bits in ECP5 and Gowin.
     #[must_use]
     pub fn memories(self) -> u64 {
         match self {
@@ -181,6 +208,8 @@ impl BoardDevice {
             Self::Hx8k => 32,
             Self::Lfe5u12f | Self::Lfe5u25f => 56,
             Self::Lfe5u85f => 208,
+            Self::Gw1nr9c => 26,
+            Self::Gw2ar18c => 46,
         }
     }
 }
@@ -206,6 +235,19 @@ const COLORLIGHT_I5: [&str; 2] = [
 const ULX3S: [&str; 2] = [
     "emard/ulx3s doc/constraints/ulx3s_v20.lpf",
     "amaranth-lang/amaranth-boards amaranth_boards/ulx3s.py",
+];
+const TANG_NANO_9K: [&str; 2] = [
+    "litex-hub/litex-boards litex_boards/platforms/sipeed_tang_nano_9k.py",
+    "amaranth-lang/amaranth-boards amaranth_boards/tang_nano_9k.py",
+];
+const TANG_NANO_20K: [&str; 2] = [
+    "litex-hub/litex-boards litex_boards/platforms/sipeed_tang_nano_20k.py",
+    "ryomuk/tangnano-5V applications/TangNano6809MEM/TangNano6809MEM_project/src/tn20k.cst",
+];
+/// The second file of [`TANG_NANO_20K`] uses the LED's pin for a wire.
+const TANG_NANO_20K_LED: [&str; 2] = [
+    "litex-hub/litex-boards litex_boards/platforms/sipeed_tang_nano_20k.py",
+    "YosysHQ/apicula examples/himbaechel/tangnano20k.cst",
 ];
 /// Pins of the headers P2, P3 and P6 that have no other use, by header and pin. Those of bank 8 are left out: the configuration drives
 /// some of them.
@@ -304,6 +346,7 @@ const ULX3S_BOARD: FpgaBoard = FpgaBoard {
     package: "CABGA381",
     oscillator_hz: 25_000_000,
     volts: 3.3,
+    led_volts: 3.3,
     clock: pin("G2", ULX3S),
     serial_rx: pin("M1", ULX3S),
     serial_tx: pin("L4", ULX3S),
@@ -315,7 +358,7 @@ const ULX3S_BOARD: FpgaBoard = FpgaBoard {
 };
 
 /// All boards.
-pub const BOARDS: [FpgaBoard; 6] = [
+pub const BOARDS: [FpgaBoard; 8] = [
     FpgaBoard {
         name: "icebreaker",
         title: "iCEBreaker",
@@ -323,6 +366,7 @@ pub const BOARDS: [FpgaBoard; 6] = [
         package: "sg48",
         oscillator_hz: 12_000_000,
         volts: 3.3,
+        led_volts: 3.3,
         clock: pin("35", ICEBREAKER),
         serial_rx: pin("6", ICEBREAKER),
         serial_tx: pin("9", ICEBREAKER),
@@ -339,6 +383,7 @@ pub const BOARDS: [FpgaBoard; 6] = [
         package: "ct256",
         oscillator_hz: 12_000_000,
         volts: 3.3,
+        led_volts: 3.3,
         clock: pin("J3", HX8K),
         serial_rx: pin("B10", HX8K_SERIAL),
         serial_tx: pin("B12", HX8K_SERIAL),
@@ -355,6 +400,7 @@ pub const BOARDS: [FpgaBoard; 6] = [
         package: "CABGA381",
         oscillator_hz: 25_000_000,
         volts: 3.3,
+        led_volts: 3.3,
         clock: pin("P3", COLORLIGHT_I5),
         serial_rx: pin("H18", COLORLIGHT_I5),
         serial_tx: pin("J17", COLORLIGHT_I5),
@@ -377,6 +423,41 @@ pub const BOARDS: [FpgaBoard; 6] = [
         name: "ulx3s-85f",
         device: BoardDevice::Lfe5u85f,
         ..ULX3S_BOARD
+    },
+    FpgaBoard {
+        name: "tang-nano-9k",
+        title: "Tang Nano 9K",
+        device: BoardDevice::Gw1nr9c,
+        package: "QN88P",
+        oscillator_hz: 27_000_000,
+        volts: 3.3,
+        // Its bank has the voltage of the memory in the package.
+        led_volts: 1.8,
+        clock: pin("52", TANG_NANO_9K),
+        serial_rx: pin("18", TANG_NANO_9K),
+        serial_tx: pin("17", TANG_NANO_9K),
+        led: pin("10", TANG_NANO_9K),
+        led_is_active_low: true,
+        loader: "tangnano9k",
+        header: &[],
+        header_sources: ["", ""],
+    },
+    FpgaBoard {
+        name: "tang-nano-20k",
+        title: "Tang Nano 20K",
+        device: BoardDevice::Gw2ar18c,
+        package: "QN88",
+        oscillator_hz: 27_000_000,
+        volts: 3.3,
+        led_volts: 3.3,
+        clock: pin("4", TANG_NANO_20K),
+        serial_rx: pin("70", TANG_NANO_20K),
+        serial_tx: pin("69", TANG_NANO_20K),
+        led: pin("15", TANG_NANO_20K_LED),
+        led_is_active_low: true,
+        loader: "tangnano20k",
+        header: &[],
+        header_sources: ["", ""],
     },
 ];
 
@@ -457,7 +538,9 @@ mod tests {
     fn an_unknown_board_lists_those_that_are_known() {
         let message = board("ulx3s").unwrap_err().to_string();
         assert!(
-            message.ends_with("allowed: icebreaker, ice40-hx8k, colorlight-i5, ulx3s-12f, ulx3s-25f, ulx3s-85f"),
+            message.ends_with(
+                "allowed: icebreaker, ice40-hx8k, colorlight-i5, ulx3s-12f, ulx3s-25f, ulx3s-85f, tang-nano-9k, tang-nano-20k"
+            ),
             "{message}"
         );
     }

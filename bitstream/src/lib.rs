@@ -15,6 +15,7 @@
 //! | [`toolchain`] | the steps above, as each family has them |
 //! | [`ice40`] | iCE40: a bitstream as text, its netlist by icebox_vlog, and the comparison with the router's result |
 //! | [`ecp5`] | ECP5: the same, with the netlist by Project Trellis' database |
+//! | [`gowin`] | Gowin: the same, with the netlist by apycula's chip database |
 //! | [`network`] | the netlist of the bits in the form that is simulated, whatever the family |
 //! | [`behaviour`] | runs the netlist of the bits beside the model |
 //! | [`flips`] | makes single faults in the bits, which the comparisons must find |
@@ -29,6 +30,7 @@ pub mod ecp5;
 mod error;
 pub mod flips;
 mod function;
+pub mod gowin;
 pub mod ice40;
 pub mod label;
 pub mod model;

@@ -3,6 +3,7 @@
 use crate::BitstreamError;
 use crate::boards::{FpgaBoard, FpgaFamily, TopPin};
 use crate::ecp5::tools::Ecp5Tools;
+use crate::gowin::tools::GowinTools;
 use crate::ice40::tools::Ice40Tools;
 use crate::network::{NetIndex, Network};
 use crate::report::{CellsReport, FlipKind, TilesReport};
@@ -138,6 +139,7 @@ pub fn installed(board: &FpgaBoard, pins: &[TopPin]) -> Result<Box<dyn Toolchain
     Ok(match board.device.family() {
         FpgaFamily::Ice40 => Box::new(Ice40Tools::installed(*board)?),
         FpgaFamily::Ecp5 => Box::new(Ecp5Tools::installed(*board, pins)?),
+        FpgaFamily::Gowin => Box::new(GowinTools::installed(*board, pins)?),
     })
 }
 

@@ -187,8 +187,13 @@ impl TopFiles {
     /// The constraints: lines for every pin, none of which is left to the tool.
     #[must_use]
     pub fn constraints(&self) -> String {
+        let family = self.board.device.family();
+        let mark = match family {
+            FpgaFamily::Ice40 | FpgaFamily::Ecp5 => "#",
+            FpgaFamily::Gowin => "//",
+        };
         let mut text = format!(
-            "# Pins of {} for {}.v; each names two sources of its pin.\n",
+            "{mark} Pins of {} for {}.v; each names two sources of its pin.\n",
             self.board.title, self.module
         );
         for pin in &self.pins {
@@ -204,11 +209,18 @@ impl TopFiles {
                 header => format!("{header}; "),
             };
             let comment = format!("{header}{}", sources.join("; "));
-            let _ = match self.board.device.family() {
+            let _ = match family {
                 FpgaFamily::Ice40 => writeln!(text, "set_io {port} {pin:<4} # {comment}"),
                 FpgaFamily::Ecp5 => writeln!(
                     text,
                     "LOCATE COMP \"{port}\" SITE \"{pin}\"; # {comment}\nIOBUF PORT \"{port}\" IO_TYPE=LVCMOS33{};",
+                    self.pull(port)
+                ),
+                // Comments stand in lines of their own.
+                FpgaFamily::Gowin => writeln!(
+                    text,
+                    "// {comment}\nIO_LOC \"{port}\" {pin};\nIO_PORT \"{port}\" IO_TYPE={}{};",
+                    self.standard(pin),
                     self.pull(port)
                 ),
             };
@@ -232,7 +244,7 @@ impl TopFiles {
             self.board.title
         );
         // The memory of an iCE40 board's device is not reached past its flash.
-        if self.board.device.family() == FpgaFamily::Ecp5 {
+        if self.board.device.family() != FpgaFamily::Ice40 {
             let _ = write!(
                 text,
                 "\n# Until power is switched off.\nload:\n\topenFPGALoader -b {loader} {bits}\n"
@@ -241,14 +253,25 @@ impl TopFiles {
         text
     }
 
-    /// The setting of ECP5 for the level of an open input.
-    fn pull(&self, port: &str) -> &'static str {
+    /// The setting for the level of an open input.
+    fn pull(&self, port: &str) -> String {
         let pin = self.pins.iter().find(|pin| pin.port == port);
+        let key = match self.board.device.family() {
+            FpgaFamily::Gowin => "PULL_MODE",
+            _ => "PULLMODE",
+        };
         match pin.and_then(|pin| pin.open_level) {
-            Some(true) => " PULLMODE=UP",
-            Some(false) => " PULLMODE=DOWN",
-            None => "",
+            Some(true) => format!(" {key}=UP"),
+            Some(false) => format!(" {key}=DOWN"),
+            None => String::new(),
         }
+    }
+
+    /// The standard of a pin by its voltage.
+    fn standard(&self, pin: &str) -> &'static str {
+        let is_led = pin == self.board.led.pin;
+        let volts = if is_led { self.board.led_volts } else { self.board.volts };
+        if volts < 3.0 { "LVCMOS18" } else { "LVCMOS33" }
     }
 }
 
@@ -305,6 +328,7 @@ mod tests {
                 let line = match board.device.family() {
                     FpgaFamily::Ice40 => format!("set_io {port} "),
                     FpgaFamily::Ecp5 => format!("LOCATE COMP \"{port}\" SITE "),
+                    FpgaFamily::Gowin => format!("IO_LOC \"{port}\" "),
                 };
                 assert_eq!(constraints.matches(&line).count(), 1, "{port}");
             }

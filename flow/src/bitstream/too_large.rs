@@ -55,7 +55,7 @@ mod tests {
         let of = |name| larger_boards(&board(name).unwrap()).concat();
         assert_eq!(
             of("icebreaker"),
-            "larger boards: ice40-hx8k, colorlight-i5, ulx3s-12f, ulx3s-25f, ulx3s-85f"
+            "larger boards: ice40-hx8k, colorlight-i5, ulx3s-12f, ulx3s-25f, ulx3s-85f, tang-nano-9k, tang-nano-20k"
         );
         assert_eq!(of("colorlight-i5"), "larger boards: ulx3s-85f");
         assert!(of("ulx3s-85f").starts_with("no board is larger"));
