@@ -95,18 +95,25 @@ def pad_forms(db, tile, letter):
 
 
 def memory_forms(db, tile):
-    """The bits of the uses of a block RAM in one of its three tiles: port A writes, and port B reads words of the same width."""
+    """The bits of the uses of a block RAM in one of its three tiles: with one port that writes and one that reads, or with two of both."""
     forms = []
     cell = {"connections": {f"ADA{bit}": [""] for bit in range(4)}}
-    for width, has_register, reset in itertools.product([1, 2, 4, 9, 18, 36], (False, True), ["SYNC", "ASYNC"]):
+    numbered = ((1, 2, 4, 9, 18, 36), (False, True), ["SYNC", "ASYNC"])
+    for width, has_register, reset in itertools.product(*numbered):
+        read = str(int(has_register))
         parameters = {
-            "BIT_WIDTH_0": f"{width:b}", "BIT_WIDTH_1": f"{width:b}", "READ_MODE": str(int(has_register)), "RESET_MODE": reset,
-            "BLK_SEL_0": "000", "BLK_SEL_1": "000",
+            "BIT_WIDTH_0": f"{width:b}", "BIT_WIDTH_1": f"{width:b}", "RESET_MODE": reset, "BLK_SEL_0": "000", "BLK_SEL_1": "000",
         }
-        found = gowin_pack.set_bsram_attrs(db, cell, "SDP", parameters)
-        bits = chipdb.get_shortval_fuses(db, tile.ttyp, found, "BSRAM_SDP")
-        form = {"width": width, "registered": has_register, "asynchronous": reset == "ASYNC", "bits": numbers(tile, bits)}
-        forms.append(form)
+        uses = [("SDP", [0, 0], {"READ_MODE": read})]
+        if width <= 18:
+            for modes in itertools.product(range(3), range(3)):
+                names = {f"WRITE_MODE{port}": f"{mode:b}" for port, mode in enumerate(modes)}
+                uses.append(("DP", list(modes), {"READ_MODE0": read, "READ_MODE1": read} | names))
+        for kind, modes, more in uses:
+            found = gowin_pack.set_bsram_attrs(db, cell, kind, parameters | more)
+            bits = chipdb.get_shortval_fuses(db, tile.ttyp, found, f"BSRAM_{kind}")
+            form = {"kind": kind, "modes": modes, "width": width, "registered": has_register, "asynchronous": reset == "ASYNC"}
+            forms.append(form | {"bits": numbers(tile, bits)})
     tables = [bits for name, bits in db.shortval[tile.ttyp].items() if name.startswith("BSRAM_")]
     every = set().union(*(set().union(*table.values()) for table in tables))
     return {"every": numbers(tile, every), "forms": forms}

@@ -97,15 +97,30 @@ pub enum PadDirection {
     None,
 }
 
-/// A use of a block RAM: port A writes, and port B reads.
+/// A use of a block RAM.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 pub struct MemoryUse {
+    /// Its ports.
+    pub kind: MemoryPorts,
+    /// What the outputs of each port do in a clock in which it writes: nothing, as the data, or as the word before.
+    pub modes: [u8; 2],
     /// Width of its words.
     pub width: u8,
     /// Whether its outputs have a second register.
     pub registered: bool,
     /// Whether its reset acts at once.
     pub asynchronous: bool,
+}
+
+/// The ports of a block RAM, as nextpnr names them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+pub enum MemoryPorts {
+    /// One that writes, and one that reads.
+    #[serde(rename = "SDP")]
+    Simple,
+    /// Two that write and read.
+    #[serde(rename = "DP")]
+    Dual,
 }
 
 impl<U> CellUses<U> {

@@ -68,35 +68,44 @@ impl StoredContents<'_> {
     }
 }
 
-/// The use of a block RAM, which the bits of its three tiles say together.
+/// The uses of a block RAM, which the bits of its three tiles say together: those that differ do so in what is not in use here.
 ///
 /// # Errors
-/// [`BitstreamError::UnknownCell`] for another use than words of 9, 18 or 36 bits without output registers.
-pub(super) fn settings(routing: &GowinRouting<'_>, (row, column): (u8, u8)) -> Result<MemoryUse, BitstreamError> {
+/// [`BitstreamError::UnknownCell`] for other uses than words of 9, 18 or 36 bits without output registers.
+pub(super) fn uses(routing: &GowinRouting<'_>, (row, column): (u8, u8)) -> Result<Vec<MemoryUse>, BitstreamError> {
     let refused = |what: &str| {
         Err(BitstreamError::UnknownCell(format!(
             "R{row}C{column} block RAM: {what}"
         )))
     };
-    let uses = (column..column + TILES).map(|column| {
+    let tiles = (column..column + TILES).map(|column| {
         let settings = routing.tiles().tile_settings(row, column);
         settings.map_or(&[][..], |settings| settings.memory.as_slice())
     });
-    let uses: Vec<&[MemoryUse]> = uses.collect();
-    let mut common = uses[0].iter().filter(|one| uses.iter().all(|uses| uses.contains(one)));
-    let Some(found) = common.next().copied() else {
+    let tiles: Vec<&[MemoryUse]> = tiles.collect();
+    let common = tiles[0]
+        .iter()
+        .filter(|one| tiles.iter().all(|uses| uses.contains(one)));
+    let common: Vec<MemoryUse> = common.copied().collect();
+    let Some(first) = common.first() else {
         return refused("a use that is not known");
     };
-    if common.next().is_some() {
+    let what = |of: &MemoryUse| (of.width, of.registered, of.asynchronous);
+    if common.iter().any(|other| what(other) != what(first)) {
         return refused("bits that several uses have");
     }
-    if found.registered {
+    if first.registered {
         return refused("a second register at its outputs");
     }
-    if found.width % PART_BITS != 0 {
-        return refused(&format!("words of {} bits", found.width));
+    if !first.width.is_multiple_of(PART_BITS) {
+        return refused(&format!("words of {} bits", first.width));
     }
-    Ok(found)
+    Ok(common)
+}
+
+/// The width of the words of a block RAM.
+fn width(routing: &GowinRouting<'_>, place: (u8, u8)) -> Result<u8, BitstreamError> {
+    Ok(uses(routing, place)?[0].width)
 }
 
 /// The outputs with a word, lowest bit first: narrow words come out at the upper half.
@@ -121,7 +130,7 @@ pub(super) fn decode(
 ) -> Result<BlockRam, BitstreamError> {
     let (row, column) = place;
     let routing = decoder.routing;
-    let width = settings(routing, place)?.width;
+    let width = width(routing, place)?;
     let of = GowinOutput {
         row,
         column,

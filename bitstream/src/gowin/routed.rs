@@ -1,5 +1,6 @@
 //! The placed netlist that nextpnr writes for a Gowin device.
 
+use super::kind::{MemoryPorts, MemoryUse};
 use super::memory::{WORD_BITS, WORDS};
 use super::routing::{GowinOutput, GowinPort, GowinSource, MEMORY_OUTPUTS};
 use crate::BitstreamError;
@@ -172,10 +173,14 @@ impl<'a> RoutedGowinCell<'a> {
             "GOWIN_VCC" => vec![Some(("V", GowinSource::Constant(true)))],
             "GOWIN_GND" => vec![Some(("G", GowinSource::Constant(false)))],
             "IBUF" => vec![self.pad().ok().map(|pad| ("O", GowinSource::Output(pad)))],
-            "SDP" => {
+            "SDP" | "DP" => {
                 let ports = self.cell["connections"].as_object().into_iter().flatten();
                 let bit = |port: &'a str| {
-                    let bit = port.strip_prefix("DO")?.parse().ok()?;
+                    let name = port.strip_prefix("DO")?;
+                    let bit = match name.strip_prefix('B') {
+                        Some(bit) => MEMORY_OUTPUTS / 2 + bit.parse::<u8>().ok()?,
+                        None => name.trim_start_matches('A').parse().ok()?,
+                    };
                     Some((port, GowinSource::Output(self.output(GowinPort::Memory(bit)))))
                 };
                 ports.map(|(port, _)| bit(port)).collect()
@@ -191,7 +196,7 @@ impl<'a> RoutedGowinCell<'a> {
 
     /// The outputs that it may have in the bits.
     pub(super) fn outputs(&self) -> Vec<GowinOutput> {
-        if self.kind == "SDP" {
+        if matches!(self.kind, "SDP" | "DP") {
             let bits = 0..MEMORY_OUTPUTS;
             return bits.map(|bit| self.output(GowinPort::Memory(bit))).collect();
         }
@@ -200,6 +205,36 @@ impl<'a> RoutedGowinCell<'a> {
             _ => None,
         });
         outputs.collect()
+    }
+
+    /// The use of a memory.
+    pub(super) fn memory(&self) -> Result<MemoryUse, BitstreamError> {
+        let refused = |what: &str| BitstreamError::UnknownCell(format!("{}: a memory with {what}", self.place()));
+        let number = |key: &str| self.number(key).and_then(|number| u8::try_from(number).ok());
+        let (kind, reads, modes) = match self.kind {
+            "SDP" => (MemoryPorts::Simple, ["READ_MODE"; 2], [Some(0); 2]),
+            _ => {
+                let modes = ["WRITE_MODE0", "WRITE_MODE1"].map(number);
+                (MemoryPorts::Dual, ["READ_MODE0", "READ_MODE1"], modes)
+            }
+        };
+        let [Some(width), Some(other)] = ["BIT_WIDTH_0", "BIT_WIDTH_1"].map(number) else {
+            return Err(refused("no width"));
+        };
+        if width != other || reads.map(number) != [Some(0); 2] {
+            return Err(refused("ports of other widths, or with a second register"));
+        }
+        let [Some(first), Some(second)] = modes else {
+            return Err(refused("no modes"));
+        };
+        Ok(MemoryUse {
+            kind,
+            modes: [first, second],
+            // Words of 8 bits leave the ninth out.
+            width: if width.is_multiple_of(8) { width / 8 * 9 } else { width },
+            registered: false,
+            asynchronous: self.parameter("RESET_MODE") == "ASYNC",
+        })
     }
 
     /// Contents of a memory, in words of 18 bits.

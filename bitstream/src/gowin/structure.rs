@@ -43,7 +43,7 @@ pub fn compare_cells(
             "LUT1" | "LUT2" | "LUT3" | "LUT4" => comparison.table(cell)?,
             "MUX2_LUT5" | "MUX2_LUT6" | "MUX2_LUT7" | "MUX2_LUT8" => comparison.multiplexer(cell)?,
             "ALU" => comparison.carry(cell)?,
-            "SDP" => comparison.memory(cell, stored)?,
+            "SDP" | "DP" => comparison.memory(cell, stored)?,
             "IBUF" | "OBUF" => comparison.pad(cell)?,
             // The reset of the whole device, which is not in use.
             "GSR" if comparison.source(cell, "GSRI") == GowinSource::Constant(true) => {}
@@ -226,20 +226,9 @@ impl GowinComparison<'_> {
     fn memory(&mut self, cell: &RoutedGowinCell<'_>, stored: &StoredContents<'_>) -> Result<(), BitstreamError> {
         let place = (cell.row, cell.column);
         self.report.memories += 1;
-        let settings = memory::settings(self.routing, place)?;
-        for key in ["BIT_WIDTH_0", "BIT_WIDTH_1"] {
-            let width = cell
-                .number(key)
-                .map(|width| if width % 8 == 0 { width / 8 * 9 } else { width });
-            self.setting(cell, "words of another width", width == Some(u64::from(settings.width)));
-        }
-        self.setting(
-            cell,
-            "a second register",
-            cell.number("READ_MODE") == Some(0) && !settings.registered,
-        );
-        let is_asynchronous = cell.parameter("RESET_MODE") == "ASYNC";
-        self.setting(cell, "another kind of reset", is_asynchronous == settings.asynchronous);
+        let uses = memory::uses(self.routing, place)?;
+        let routed = cell.memory()?;
+        self.setting(cell, "another width, mode or reset", uses.contains(&routed));
         for key in ["BLK_SEL_0", "BLK_SEL_1"] {
             self.setting(cell, "it is selected otherwise", cell.number(key) == Some(0));
         }
