@@ -261,3 +261,82 @@ impl DecodedTiles {
         table.copied().unwrap_or(EMPTY_TABLE)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    /// Two by two tiles of four by two bits each, with two switches to A0, an end of a long wire, and a bit of the configuration.
+    fn database() -> GowinDatabase {
+        let kind = json!({
+            "width": 4, "height": 2,
+            "switches": {
+                "A0": {"F1": [0], "N111": [0, 1]}, "LT02": {"A6": [2]}, "SN10": {"Q0": []}, "GT00": {"SPINE0": [4], "SPINE1": [4]}
+            },
+            "isolated": {"LT02": [3]}, "fixed": [], "configuration": [7], "tables": [], "slices": [], "pads": {}, "ports": {}, "memory": null
+        });
+        let segment = json!({
+            "column": 0, "index": 0, "min_x": 0, "max_x": 1, "min_y": 0, "max_y": 1, "top_row": 0, "bottom_row": 1, "top_wire": "LT02",
+            "bottom_wire": "LT02"
+        });
+        let text = json!({
+            "version": super::super::database::VERSION, "grid": [[1, 1], [1, 1]], "kinds": {"1": kind}, "nodes": [],
+            "spines": {"SPINE0": [[0, 1]], "SPINE1": [[0, 0], [1, 1]]}, "segments": [segment], "carry_tables": {},
+            "bottom_wires": ["", ""], "memory_rows": [], "memory_columns": [], "pins": {}
+        });
+        GowinDatabase::read(&text.to_string()).unwrap()
+    }
+
+    /// The tiles with these bits, each of a row, a column and a number.
+    fn decoded(bits: &[(u8, u8, u16)]) -> Result<DecodedTiles, BitstreamError> {
+        let database = database();
+        let mut rows = [[b'0'; 8]; 4];
+        for (row, column, bit) in bits {
+            let (top, left) = database.corner(*row, *column);
+            let bit = usize::from(*bit);
+            rows[top + bit / 4][7 - (left + bit % 4)] = b'1';
+        }
+        let rows = rows.map(|row| format!("{}{}\n", String::from_utf8_lossy(&row), "1".repeat(64)));
+        let text = format!("{:032b}\n{}{:064b}\n", 0x3B80_0004u32, rows.concat(), 0x0Au64 << 56);
+        let frames = GowinFrames::read(&text, database.bits()).unwrap();
+        DecodedTiles::new(&frames, &database)
+    }
+
+    fn source(tiles: &DecodedTiles, row: u8, column: u8, name: &str) -> Option<GowinWire> {
+        let wire = database().wire(row, column, name).unwrap();
+        tiles.switched.get(&wire).copied()
+    }
+
+    #[test]
+    fn switches_are_on_with_all_of_their_bits_and_wires_begin_in_other_tiles() {
+        let tiles = decoded(&[(0, 0, 0), (1, 1, 0), (1, 1, 1), (0, 1, 7), (1, 1, 4)]).unwrap();
+        let wire = |row, column, name| database().wire(row, column, name);
+        assert_eq!(source(&tiles, 0, 0, "A0"), wire(0, 0, "F1"));
+        // The wire that comes from below turns back at the edge.
+        assert_eq!(source(&tiles, 1, 1, "A0"), wire(1, 1, "SN10"));
+        assert_eq!(source(&tiles, 0, 1, "A0"), None);
+        // One of the two spines with the same bits passes the tile.
+        assert_eq!(source(&tiles, 1, 1, "GT00"), wire(1, 1, "SPINE1"));
+        assert_eq!((tiles.set, tiles.unnamed), (3, vec![(0, 1, 7)]));
+    }
+
+    #[test]
+    fn bits_without_a_meaning_and_long_wires_with_two_ends_are_refused() {
+        for (bits, words) in [
+            (&[(0, 0, 1)][..], "R0C0: the switch to A0 has bits that are not known"),
+            (&[(0, 1, 5)], "R0C1: the bit 5 has no known meaning"),
+            (&[(1, 0, 4)], "R1C0: the switch to GT00"),
+            (
+                &[(0, 0, 2)],
+                "R1C0: the long wire LT02 is driven at its other end, and is not cut off here",
+            ),
+            (&[(0, 0, 2), (1, 0, 2)], "the wire LT02 has two sources"),
+        ] {
+            let message = decoded(bits).unwrap_err().to_string();
+            assert!(message.contains(words), "{message}");
+        }
+        let tiles = decoded(&[(0, 0, 2), (1, 0, 3)]).unwrap();
+        assert_eq!(source(&tiles, 1, 0, "LT01"), database().wire(0, 0, "A6"));
+    }
+}
