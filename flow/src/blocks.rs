@@ -53,6 +53,7 @@ pub(crate) fn others(
         settings: first.map_or_else(Default::default, |control| control.derived.settings),
         components,
         stage: None,
+        inline: None,
     };
     benches(&sizes).map_err(bench::failure)
 }

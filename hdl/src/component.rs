@@ -5,9 +5,9 @@
 
 use crate::emit::{EmitError, Header, Module, add, connect};
 use crate::{
-    axis, divider, divider_share, drive_command, encoder_generator, error_table, excitation, group, linear_scale,
-    pulse_counter, pwm, registers, sample_select, schedule, segments, setting_banks, shaper, sliding_mode,
-    step_generator, time_base, trace,
+    axis, divider, divider_share, drive_command, encoder_generator, error_table, excitation, group, inline_axis,
+    inline_group, linear_scale, pulse_counter, pwm, registers, sample_select, schedule, segments, setting_banks,
+    shaper, sliding_mode, step_generator, time_base, trace,
 };
 use posicast_blocks::component::{Component, ComponentPart, JoinedBlocks};
 
@@ -24,15 +24,28 @@ pub fn emit(component: &Component, name: &str, prefix: &str) -> Result<Vec<Modul
         ports: Vec::new(),
         parameters: registers::parameters(map),
     };
-    joined(component.whole(), name, prefix, &header)
+    joined(component.whole(), name, prefix, &header, Of::Stage)
+}
+
+/// What the axes are a part of.
+#[derive(Clone, Copy)]
+pub(crate) enum Of {
+    Stage,
+    InlineShaper,
 }
 
 /// The modules of blocks joined to the module `top`, without duplicates.
-fn joined(whole: &JoinedBlocks, top: &str, prefix: &str, header: &Header) -> Result<Vec<Module>, EmitError> {
+pub(crate) fn joined(
+    whole: &JoinedBlocks,
+    top: &str,
+    prefix: &str,
+    header: &Header,
+    of: Of,
+) -> Result<Vec<Module>, EmitError> {
     let mut modules: Vec<Module> = Vec::new();
     let mut tops = Vec::new();
     for block in whole.blocks() {
-        let of_block = self::block(block, top, prefix)?;
+        let of_block = self::block(block, top, prefix, of)?;
         tops.extend(of_block.last().cloned());
         add(&mut modules, of_block)?;
     }
@@ -46,7 +59,7 @@ fn joined(whole: &JoinedBlocks, top: &str, prefix: &str, header: &Header) -> Res
 }
 
 /// The modules of one block; its top comes last.
-fn block(block: &ComponentPart, top: &str, prefix: &str) -> Result<Vec<Module>, EmitError> {
+fn block(block: &ComponentPart, top: &str, prefix: &str, of: Of) -> Result<Vec<Module>, EmitError> {
     match block {
         ComponentPart::Registers(map) => Ok(vec![registers::emit(map, prefix)?]),
         ComponentPart::Shaper(config) => shaper::emit(config, prefix),
@@ -69,14 +82,20 @@ fn block(block: &ComponentPart, top: &str, prefix: &str) -> Result<Vec<Module>, 
         ComponentPart::DividerShare(channels) => divider_share::emit(*channels, prefix),
         ComponentPart::Schedule(config) => schedule::emit(config, prefix),
         ComponentPart::Group(axes) => group::emit(*axes, prefix),
+        ComponentPart::InlineAxis(config) => inline_axis::emit(config, prefix),
+        ComponentPart::InlineGroup(axes) => inline_group::emit(*axes, prefix),
         ComponentPart::Joined(whole) => {
+            let name = whole.name();
             let header = Header {
-                about: format!("Axis {} of the stage, without its registers.", whole.name()),
+                about: match of {
+                    Of::Stage => format!("Axis {name} of the stage, without its registers."),
+                    Of::InlineShaper => format!("Axis {name} of the inline shaper."),
+                },
                 ports: Vec::new(),
                 parameters: Vec::new(),
             };
             let of_axis = |owner: &str| format!("{owner}_{}", whole.name());
-            joined(whole, &of_axis(top), &of_axis(prefix), &header)
+            joined(whole, &of_axis(top), &of_axis(prefix), &header, of)
         }
     }
 }

@@ -22,6 +22,8 @@
 //! | [`segments`] | the command FIFO: segments of constant jerk to position, velocity and acceleration |
 //! | [`encoder_generator`] | the internal encoder: quadrature at a set rate, in place of the pins |
 //! | [`step_generator`] | the step generator: the position of every tick to the pulses of a drive with step inputs |
+//! | [`inline_axis`], [`inline_group`] | an axis of the inline shaper, and what its axes share |
+//! | [`inline_shaper`] | the inline shaper: from the steps of a controller to shaped steps for the drives |
 //! | [`error_table`] | a measured error of screw or scale over position, taken from the position reference |
 //! | [`excitation`] | a test signal on the position reference |
 //! | [`axis`] | the supervisor of an axis: states, limits, brake, faults |
@@ -46,6 +48,9 @@ pub mod encoder_generator;
 pub mod error_table;
 pub mod excitation;
 pub mod group;
+pub mod inline_axis;
+pub mod inline_group;
+pub mod inline_shaper;
 mod kernel;
 pub mod linear_scale;
 mod link_frames;

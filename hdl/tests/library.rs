@@ -6,6 +6,7 @@
 use posicast_blocks::cascade::CascadeConfig;
 use posicast_blocks::component::Component;
 use posicast_blocks::divider::DividerConfig;
+use posicast_blocks::inline_axis::{InlineAxisConfig, InlineLinesActiveLow};
 use posicast_blocks::pwm::{ActiveLow, BridgeMode, PwmConfig};
 use posicast_blocks::schedule::ScheduleConfig;
 use posicast_blocks::shaper::{ShaperConfig, ShaperMotion};
@@ -14,9 +15,9 @@ use posicast_blocks::step_generator::{StepGeneratorConfig, StepLinesActiveLow, S
 use posicast_blocks::trace::TraceConfig;
 use posicast_hdl::emit::{LIBRARY, Module};
 use posicast_hdl::{
-    axis, cascade, component, divider, divider_share, drive_command, encoder_generator, excitation, group,
-    linear_scale, pulse_counter, pwm, registers, sample_select, schedule, segments, setting_banks, shaper,
-    sliding_mode, spi_bridge, step_generator, time_base, trace, uart_bridge,
+    axis, cascade, component, divider, divider_share, drive_command, encoder_generator, excitation, group, inline_axis,
+    inline_group, linear_scale, pulse_counter, pwm, registers, sample_select, schedule, segments, setting_banks,
+    shaper, sliding_mode, spi_bridge, step_generator, time_base, trace, uart_bridge,
 };
 use posicast_taps::{Tap, TapTable};
 use std::collections::BTreeMap;
@@ -110,6 +111,16 @@ fn step_generator_config(chance: &mut Chance) -> StepGeneratorConfig {
         .active_low(low)
 }
 
+fn inline_axis_config(chance: &mut Chance) -> InlineAxisConfig {
+    let low = InlineLinesActiveLow {
+        a: chance.is(),
+        b: chance.is(),
+    };
+    InlineAxisConfig::new(20 + chance.below(2), 300 + chance.below(2))
+        .unwrap()
+        .active_low(low)
+}
+
 /// Returns the Verilog of every block, built with random settings for the machine `prefix`.
 fn machine(prefix: &str, chance: &mut Chance) -> Vec<Vec<Module>> {
     let tick = DividerConfig::new(chance.one_of(&[1000, 2500, 5000, 5001])).unwrap();
@@ -131,6 +142,8 @@ fn machine(prefix: &str, chance: &mut Chance) -> Vec<Vec<Module>> {
         trace::emit(&trace, prefix),
         cascade::emit(&cascade, prefix),
         group::emit(axes, prefix),
+        inline_group::emit(axes, prefix),
+        inline_axis::emit(&inline_axis_config(chance), prefix),
         divider_share::emit(axes, prefix),
         sample_select::emit(word_bits, channels, prefix),
         setting_banks::emit(&settings, prefix),

@@ -38,6 +38,8 @@ pub mod error_table;
 pub mod excitation;
 pub mod formal;
 pub mod icarus;
+pub mod inline_axis;
+pub mod inline_shaper;
 pub mod linear_scale;
 pub mod linked_stage;
 pub mod lockstep;
@@ -89,13 +91,16 @@ pub(crate) const REGISTRY: &[RegistryRow] = &[
     uart_bridge::ROW,
     spi_bridge::ROW,
     step_generator::ROW,
+    inline_axis::ROW,
     parts::TIME_BASE,
     parts::SCHEDULE,
     parts::DIVIDER_SHARE,
     parts::GROUP,
+    parts::INLINE_GROUP,
     parts::SAMPLE_SELECT,
     parts::SETTING_BANKS,
     registers::ROW,
     component::ROW,
     stage::ROW,
+    inline_shaper::ROW,
 ];

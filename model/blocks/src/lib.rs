@@ -14,6 +14,9 @@ pub mod encoder_generator;
 pub mod error_table;
 pub mod excitation;
 pub mod group;
+pub mod inline_axis;
+pub mod inline_group;
+pub mod inline_shaper;
 pub mod linear_scale;
 pub mod link;
 mod link_frames;
@@ -51,6 +54,7 @@ pub const PORT_LISTS: &[(&str, PortList)] = &[
     ("encoder_generator", encoder_generator::PORTS),
     ("error_table", error_table::PORTS),
     ("excitation", excitation::PORTS),
+    ("inline_axis", inline_axis::PORTS),
     ("linear_scale", linear_scale::PORTS),
     ("pulse_counter", pulse_counter::PORTS),
     ("pwm", pwm::PORTS),

@@ -9,6 +9,7 @@ mod divider;
 mod drive_command;
 mod encoder_generator;
 mod excitation;
+mod inline_shaper;
 mod linear_scale;
 mod link;
 mod port_tables;

@@ -15,6 +15,8 @@ use posicast_blocks::encoder_generator::EncoderGenerator;
 use posicast_blocks::error_table::{EntryUnit, ErrorTable, ErrorTableConfig, ErrorTableFormat};
 use posicast_blocks::excitation::Excitation;
 use posicast_blocks::group::Group;
+use posicast_blocks::inline_axis::{InlineAxis, InlineAxisConfig};
+use posicast_blocks::inline_group::InlineGroup;
 use posicast_blocks::linear_scale::LinearScale;
 use posicast_blocks::pulse_counter::PulseCounter;
 use posicast_blocks::pwm::{BridgeMode, Pwm};
@@ -119,6 +121,17 @@ const STEPS: Hints = &[
     ("clear_flags", RARE),
 ];
 
+const INLINE: Hints = &[
+    ("rst", &[0]),
+    ("run", &[1, 1, 1, 1, 0]),
+    ("tick", RARE),
+    ("count", &[5, 5, 5, 6]),
+    ("given", &[5]),
+    ("illegal", RARE),
+    ("too_fast", RARE),
+    ("owed_exceeded", RARE),
+];
+
 const COUNTER: Hints = &[
     ("a", &[0, 1]),
     ("b", &[0, 1]),
@@ -199,6 +212,14 @@ fn blocks() -> Vec<Tried> {
             };
             StepGenerator::new(&StepGeneratorConfig::new(40, 4, StepMode::StepDirection, times, 3).unwrap())
         }),
+        tried("inline_axis", INLINE, || {
+            InlineAxis::new(&InlineAxisConfig::new(3, 4).unwrap())
+        }),
+        tried(
+            "inline_group",
+            &[("tick", RARE), ("rst", RARE), ("axis_fault_1", RARE)],
+            || InlineGroup::new(2),
+        ),
         tried(
             "linear_scale",
             &[("tick", RARE), ("velocity_valid", RARE), ("align", RARE), ("rst", RARE)],

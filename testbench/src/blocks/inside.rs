@@ -3,7 +3,7 @@
 //! Stimuli made for a block reach corner cases that traffic on the bus hardly ever does, and the ports of a block alone
 //! show what a stage shows only on request, or not at all.
 
-use posicast_blocks::component::{Component, ComponentPart as Part};
+use posicast_blocks::component::{Component, ComponentPart as Part, JoinedBlocks};
 
 use super::Block;
 use crate::Error;
@@ -13,6 +13,7 @@ use crate::drive_command::DriveCommandBlock;
 use crate::encoder_generator::EncoderGeneratorBlock;
 use crate::error_table::ErrorTableBlock;
 use crate::excitation::ExcitationBlock;
+use crate::inline_axis::InlineAxisBlock;
 use crate::linear_scale::LinearScaleBlock;
 use crate::parts::PartBlock;
 use crate::parts::SmallPart as Small;
@@ -63,10 +64,15 @@ pub(crate) fn of_component(component: &Component, prefix: &str, axis: &str) -> R
 /// # Errors
 /// As [`ShaperBlock::new`].
 pub(crate) fn of_stage(component: &Component, prefix: &str) -> Result<Vec<Box<dyn Block>>, Error> {
-    let shared = Place {
-        prefix,
-        instance: "in the stage",
-    };
+    of_joined(component.whole(), prefix, "in the stage")
+}
+
+/// As [`of_stage`], for blocks joined without registers; `instance` names the whole.
+///
+/// # Errors
+/// As [`ShaperBlock::new`].
+pub(crate) fn of_joined(whole: &JoinedBlocks, prefix: &str, instance: &str) -> Result<Vec<Box<dyn Block>>, Error> {
+    let shared = Place { prefix, instance };
     let mut blocks: Vec<Box<dyn Block>> = Vec::new();
     let mut add = |part: &Part, place: &Place<'_>| -> Result<(), Error> {
         let is_there = |block: &dyn Block| {
@@ -78,12 +84,12 @@ pub(crate) fn of_stage(component: &Component, prefix: &str) -> Result<Vec<Box<dy
         }
         Ok(())
     };
-    for part in component.blocks() {
+    for part in whole.blocks() {
         match part {
             Part::Joined(axis) => {
                 let own = Place {
                     prefix: &format!("{prefix}_{}", axis.name()),
-                    instance: &format!("{}, in the stage", axis.name()),
+                    instance: &format!("{}, {instance}", axis.name()),
                 };
                 axis.blocks()
                     .try_for_each(|part| add(part, if part.is_common() { &shared } else { &own }))?;
@@ -116,6 +122,8 @@ fn block_of_part(part: &Part, place: &Place<'_>) -> Result<Option<Box<dyn Block>
         Part::DividerShare(channels) => small(Small::DividerShare(*channels)),
         Part::Schedule(config) => small(Small::Schedule(*config)),
         Part::Group(axes) => small(Small::Group(*axes)),
+        Part::InlineAxis(config) => Box::new(InlineAxisBlock::new(*config, prefix, instance)),
+        Part::InlineGroup(axes) => small(Small::InlineGroup(*axes)),
         Part::TimeBase(config) => small(Small::TimeBase(*config)),
         Part::SettingBanks(settings) => small(Small::SettingBanks(**settings)),
         Part::SampleSelect { word_bits, channels } => small(Small::SampleSelect {

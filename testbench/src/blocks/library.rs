@@ -101,6 +101,7 @@ pub fn library_sizes() -> Result<BenchSizes, Error> {
         settings: Settings::default(),
         components: components.into_iter().collect::<Result<_, _>>()?,
         stage: Some(stage()?),
+        inline: Some(crate::inline_shaper::example()?),
     })
 }
 

@@ -11,6 +11,7 @@
 //! The row of a new block is in the file of its bench; name the block in `lib.rs`, as a module and in [`REGISTRY`].
 
 use posicast_blocks::divider::DividerConfig;
+use posicast_blocks::inline_shaper::InlineShaper;
 use posicast_blocks::pwm::PwmConfig;
 use posicast_blocks::shaper::ShaperConfig;
 use posicast_blocks::sliding_mode::Settings;
@@ -80,6 +81,8 @@ pub struct BenchSizes {
     pub components: Vec<ComponentBlock>,
     /// The stage, if it is compared too.
     pub stage: Option<StageConfig>,
+    /// The inline shaper, if there is one.
+    pub inline: Option<InlineShaper>,
 }
 
 /// A block at a size, and the name of the size.

@@ -1,5 +1,5 @@
-//! The bench of the small blocks that connect others: schedule, divider share, group, time base, sample select, setting
-//! banks.
+//! The bench of the small blocks that connect others: schedule, divider share, group, inline group, time base, sample
+//! select, setting banks.
 
 pub(crate) mod proofs;
 pub(crate) mod stimuli;
@@ -14,7 +14,9 @@ use posicast_blocks::shaper::MOTION_WORD_BITS;
 use posicast_blocks::sliding_mode::Settings;
 use posicast_blocks::{ClockedBlock, Port};
 use posicast_hdl::emit::{EmitError, Module};
-use posicast_hdl::{SimulationError, divider_share, group, sample_select, schedule, setting_banks, time_base};
+use posicast_hdl::{
+    SimulationError, divider_share, group, inline_group, sample_select, schedule, setting_banks, time_base,
+};
 
 use crate::blocks::changes::Changes;
 use crate::blocks::registry::{RegistryRow, one, small};
@@ -101,6 +103,26 @@ pub(crate) const GROUP: RegistryRow = RegistryRow {
     mutants: trials::GROUP,
     ..RegistryRow::EMPTY
 };
+pub(crate) const INLINE_GROUP: RegistryRow = RegistryRow {
+    name: "inline_group",
+    benches: |sizes| {
+        let Some(shaper) = &sizes.inline else {
+            return Ok(Vec::new());
+        };
+        let axes = shaper.config().axes.len();
+        Ok(one(PartBlock::new(SmallPart::InlineGroup(axes), &sizes.prefix)))
+    },
+    small: || Ok(small(PartBlock::new(SmallPart::InlineGroup(2), ""), "2 axes")),
+    proofs: || [2, 4].map(proofs::inline_group).into_iter().collect(),
+    trials: || {
+        Ok(vec![
+            trials::trial(SmallPart::InlineGroup(2), "2 axes"),
+            trials::trial(SmallPart::InlineGroup(4), "4 axes"),
+        ])
+    },
+    mutants: trials::INLINE_GROUP,
+    ..RegistryRow::EMPTY
+};
 pub(crate) const SAMPLE_SELECT: RegistryRow = RegistryRow {
     name: "sample_select",
     benches: |sizes| Ok(one(PartBlock::new(WIDE_SAMPLES, &sizes.prefix))),
@@ -145,6 +167,8 @@ pub enum SmallPart {
     DividerShare(usize),
     /// `group`: couples this many axes.
     Group(usize),
+    /// `inline_group`: what this many axes of the inline shaper share.
+    InlineGroup(usize),
     /// `time_base`: makes ticks of this length.
     TimeBase(DividerConfig),
     /// `sample_select`: selects the source of samples.
@@ -177,6 +201,7 @@ impl PartBlock {
             }
             SmallPart::DividerShare(channels) => (Model::DividerShare(channels), format!("{channels} channels")),
             SmallPart::Group(axes) => (Model::Group(axes), format!("{axes} axes")),
+            SmallPart::InlineGroup(axes) => (Model::InlineGroup(axes), format!("{axes} axes")),
             SmallPart::TimeBase(config) => {
                 let clocks = format!("{} clocks per tick", config.tick_clocks());
                 (Model::TimeBase(config), clocks)
@@ -223,6 +248,7 @@ impl Block for PartBlock {
             SmallPart::Schedule(config) => schedule::emit(config, prefix),
             SmallPart::DividerShare(channels) => divider_share::emit(*channels, prefix),
             SmallPart::Group(axes) => group::emit(*axes, prefix),
+            SmallPart::InlineGroup(axes) => inline_group::emit(*axes, prefix),
             SmallPart::TimeBase(config) => time_base::emit(config, prefix),
             SmallPart::SampleSelect { word_bits, channels } => sample_select::emit(*word_bits, *channels, prefix),
             SmallPart::SettingBanks(settings) => setting_banks::emit(settings, prefix),
@@ -235,6 +261,7 @@ impl Block for PartBlock {
             SmallPart::Schedule(config) => schedule::name(config, prefix),
             SmallPart::DividerShare(channels) => divider_share::name(*channels, prefix),
             SmallPart::Group(axes) => group::name(*axes, prefix),
+            SmallPart::InlineGroup(axes) => inline_group::name(*axes, prefix),
             SmallPart::TimeBase(config) => time_base::name(config, prefix),
             SmallPart::SampleSelect { word_bits, channels } => sample_select::name(*word_bits, *channels, prefix),
             SmallPart::SettingBanks(_) => setting_banks::name(prefix),
@@ -250,6 +277,7 @@ impl Block for PartBlock {
             SmallPart::Schedule(config) => schedule::simulate(config),
             SmallPart::DividerShare(channels) => divider_share::simulate(*channels),
             SmallPart::Group(axes) => group::simulate(*axes),
+            SmallPart::InlineGroup(axes) => inline_group::simulate(*axes),
             SmallPart::TimeBase(config) => time_base::simulate(config),
             SmallPart::SampleSelect { word_bits, channels } => sample_select::simulate(*word_bits, *channels),
             SmallPart::SettingBanks(settings) => setting_banks::simulate(settings),

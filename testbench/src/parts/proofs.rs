@@ -3,10 +3,10 @@
 use posicast_blocks::divider::DividerConfig;
 use posicast_blocks::schedule::ScheduleConfig;
 use posicast_blocks::{
-    divider_share as share_model, group as group_model, sample_select as select_model, schedule as schedule_model,
-    setting_banks as banks_model, time_base as time_model,
+    divider_share as share_model, group as group_model, inline_group as inline_model, sample_select as select_model,
+    schedule as schedule_model, setting_banks as banks_model, time_base as time_model,
 };
-use posicast_hdl::{divider_share, group, sample_select, schedule, setting_banks, time_base};
+use posicast_hdl::{divider_share, group, inline_group, sample_select, schedule, setting_banks, time_base};
 
 use crate::Error;
 use crate::formal::{Engine, INDUCTION, Task, refused};
@@ -30,6 +30,20 @@ pub(crate) fn group(axes: usize) -> Result<Task, Error> {
     ];
     let block = (group::emit(axes, "")?, group_model::ports(axes));
     Ok(Task::new("group", &format!("{axes} axes"), Engine::Pdr, block).properties(&macros, include_str!("group.sv")))
+}
+
+pub(crate) fn inline_group(axes: usize) -> Result<Task, Error> {
+    let list = |name: &str| {
+        let lines: Vec<String> = (0..axes).rev().map(|axis| format!("{name}_{axis}")).collect();
+        format!("{{{}}}", lines.join(", "))
+    };
+    let macros = [
+        ("AXIS_SETTLED", list("axis_settled")),
+        ("AXIS_FAULT", list("axis_fault")),
+    ];
+    let block = (inline_group::emit(axes, "")?, inline_model::ports(axes));
+    let task = Task::new("inline_group", &format!("{axes} axes"), Engine::Pdr, block);
+    Ok(task.properties(&macros, include_str!("inline_group.sv")))
 }
 
 pub(crate) fn schedule(clocks: u32) -> Result<Task, Error> {

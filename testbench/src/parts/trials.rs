@@ -24,6 +24,19 @@ pub(super) const GROUP: &[BlockMutant] = &[BlockMutant::new(
     "& !can_start_1)",
     "& !can_start_0)",
 )];
+pub(super) const INLINE_GROUP: &[BlockMutant] = &[
+    BlockMutant::new(
+        "drives that come back after an emergency stop",
+        "& awake & !emergency",
+        "& awake",
+    ),
+    BlockMutant::new(
+        "a change of the shaping while an axis moves",
+        "tick & (all_settled | !run_q)",
+        "tick",
+    ),
+    BlockMutant::new("a clear that lasts", "& !clear_before", ""),
+];
 pub(super) const SETTING_BANKS: &[BlockMutant] = &[
     BlockMutant::new(
         "a read-back of another row",

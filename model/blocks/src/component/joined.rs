@@ -10,6 +10,8 @@ use crate::encoder_generator::EncoderGenerator;
 use crate::error_table::{ErrorTable, ErrorTableConfig};
 use crate::excitation::Excitation;
 use crate::group::Group;
+use crate::inline_axis::{InlineAxis, InlineAxisConfig};
+use crate::inline_group::InlineGroup;
 use crate::linear_scale::LinearScale;
 use crate::pulse_counter::PulseCounter;
 use crate::pwm::{Pwm, PwmConfig};
@@ -74,6 +76,10 @@ pub enum ComponentPart {
     Schedule(ScheduleConfig),
     /// The group, which couples this many axes.
     Group(usize),
+    /// An axis of the inline shaper: samples the command, and selects what the steps follow.
+    InlineAxis(InlineAxisConfig),
+    /// What this many axes of the inline shaper share.
+    InlineGroup(usize),
     /// Blocks joined to one.
     Joined(Box<JoinedBlocks>),
 }
@@ -103,6 +109,8 @@ impl ComponentPart {
             Self::DividerShare(_) => "divider_share",
             Self::Schedule(_) => "schedule",
             Self::Group(_) => "group",
+            Self::InlineAxis(_) => "inline_axis",
+            Self::InlineGroup(_) => "inline_group",
             Self::Joined(joined) => joined.name(),
         }
     }
@@ -118,6 +126,7 @@ impl ComponentPart {
                 | Self::StepGenerator(_)
                 | Self::ErrorTable(_)
                 | Self::Trace(_)
+                | Self::InlineAxis(_)
                 | Self::Joined(_)
         )
     }
@@ -146,6 +155,8 @@ impl ComponentPart {
             Self::DividerShare(channels) => Box::new(DividerShare::new(*channels)),
             Self::Schedule(config) => Box::new(Schedule::new(config)),
             Self::Group(axes) => Box::new(Group::new(*axes)),
+            Self::InlineAxis(config) => Box::new(InlineAxis::new(config)),
+            Self::InlineGroup(axes) => Box::new(InlineGroup::new(*axes)),
             Self::Joined(joined) => Box::new(joined.model(seed)),
         }
     }
