@@ -42,8 +42,8 @@ pub use crate::control::{Control, ControlSetting, StabilityMargins};
 pub use certificate::{Certificate, CertifiedMode, LeastDuration, ProofPoint, WorstPoint};
 pub use delay::{DelayParts, EqualDelays};
 pub use document::{
-    Clocking, DesignAxis, DesignImpulse, DesignMode, Document, FreeMode, Mechanics, ModeClass, PeriodicSolution,
-    Quantised, Residual, ShaperCrossGain, TableTap,
+    Clocking, DesignAxis, DesignImpulse, DesignMode, Document, FreeMode, InlineAxisDocument, Mechanics, ModeClass,
+    PeriodicSolution, Quantised, Residual, ShaperCrossGain, TableTap,
 };
 pub use error_table::DesignErrorTable;
 pub use family::{DesignFamily, FamilyMode, FamilyTable};
@@ -223,6 +223,25 @@ impl<'a> DesignReport<'a> {
                 .stage
                 .as_ref()
                 .map(|stage| EqualDelays::new(stage, &self.design)),
+            inline: self.inline(),
         }
+    }
+
+    /// Delays and rates of the inline shaper, if there is one.
+    fn inline(&self) -> Vec<InlineAxisDocument> {
+        let Ok(Some(inline)) = self.hardware.inline() else {
+            return Vec::new();
+        };
+        let axes = self.machine.axes.iter().zip(&inline.axes);
+        axes.map(|(axis, figures)| InlineAxisDocument {
+            axis: axis.name.clone(),
+            input_hz: figures.input_hz,
+            output_hz: figures.output_hz,
+            overshoot: figures.overshoot,
+            shaped_s: figures.shaped_s,
+            unshaped_s: figures.unshaped_s,
+            settle_s: figures.settle_s,
+        })
+        .collect()
     }
 }

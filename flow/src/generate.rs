@@ -5,7 +5,7 @@ use crate::design::DesignReport;
 use crate::driver;
 use crate::failure::Failure;
 use crate::hal;
-use crate::hardware::{Built, LINK_SUFFIX, STAGE_SUFFIX};
+use crate::hardware::{Built, INLINE_SUFFIX, LINK_SUFFIX, STAGE_SUFFIX};
 use crate::kit;
 use crate::machine::{self, MachineFile};
 use crate::observer::Observer;
@@ -14,7 +14,6 @@ use crate::{sopc, verilog};
 use posicast_machine::machine_file::Machine;
 use posicast_synth::package::{Committed, Package};
 use posicast_synth::sopc::Board;
-use posicast_testbench::linked_stage::LinkedStageBlock;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -54,8 +53,7 @@ pub fn generate(options: &Options, observer: &dyn Observer) -> Result<Outcome<Do
     let folder = package.root().to_owned();
     let committed = package.commit().map_err(Failure::because)?;
     tell(&committed, observer);
-    let of_stage = (has_stage, built.link.as_ref());
-    let document = Document::new(&file.machine, of_stage, &folder, &committed.files);
+    let document = Document::new(&file.machine, &built, &folder, &committed.files);
     Ok(Outcome::passed(document))
 }
 
@@ -72,7 +70,16 @@ pub(crate) fn add(
     let sources = verilog::add_sources(package, file, &modules)?;
     kit::add(package, &kit::files(machine, &modules, built))?;
     let of_stage = (built.stage.as_ref(), built.link.as_ref());
-    sopc::add(package, (machine, path), board, of_stage, &built.components, observer)?;
+    let inline = built.inline_unit();
+    sopc::add(
+        package,
+        (machine, path),
+        board,
+        of_stage,
+        &built.components,
+        inline,
+        observer,
+    )?;
     driver::add(package, machine, &modules, &built.components, of_stage)?;
     Ok(sources)
 }
@@ -84,33 +91,33 @@ pub struct Document {
     pub name: String,
     /// The output folder.
     pub folder: String,
-    /// The top modules: the shapers, then the stage and the stage with its line, where the machine has them.
+    /// The top modules: the shapers, then the stage, the stage with its line, and the inline shaper, where the machine has them.
     pub top: Vec<String>,
     /// Paths in the folder.
     pub files: Vec<String>,
     /// Name of the stage's line, if it has one.
     #[serde(skip)]
     pub line: Option<&'static str>,
+    /// Whether there is an inline shaper.
+    #[serde(skip)]
+    pub has_inline: bool,
 }
 
 impl Document {
-    fn new(
-        machine: &Machine,
-        (has_stage, link): (bool, Option<&LinkedStageBlock>),
-        folder: &Path,
-        files: &[PathBuf],
-    ) -> Self {
+    fn new(machine: &Machine, built: &Built<'_>, folder: &Path, files: &[PathBuf]) -> Self {
         let name = &machine.name;
         let relative = |path: &PathBuf| path.strip_prefix(folder).unwrap_or(path).display().to_string();
         Self {
             name: name.clone(),
             folder: folder.display().to_string(),
             top: std::iter::once(name.clone())
-                .chain(has_stage.then(|| format!("{name}{STAGE_SUFFIX}")))
-                .chain(link.map(|_| format!("{name}{LINK_SUFFIX}")))
+                .chain(built.stage.as_ref().map(|_| format!("{name}{STAGE_SUFFIX}")))
+                .chain(built.link.as_ref().map(|_| format!("{name}{LINK_SUFFIX}")))
+                .chain(built.inline.as_ref().map(|_| format!("{name}{INLINE_SUFFIX}")))
                 .collect(),
             files: files.iter().map(relative).collect(),
-            line: link.map(|link| link.config().line()),
+            has_inline: built.inline.is_some(),
+            line: built.link.as_ref().map(|link| link.config().line()),
         }
     }
 }

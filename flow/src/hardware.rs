@@ -10,10 +10,12 @@ use posicast_blocks::linked_stage::address_limit;
 use posicast_blocks::stage::StageConfig;
 use posicast_hdl::emit::{Module, add};
 use posicast_hdl::machine::{AxisShaper, emit_machine};
-use posicast_machine::hardware::{Hardware, HardwareError, MachineStage, NAME_KEY};
+use posicast_machine::hardware::{Hardware, HardwareError, InlineFigures, MachineStage, NAME_KEY};
 use posicast_machine::machine_file::{LinkLine, LinkSection, Machine};
+use posicast_synth::sopc::{InlineUnit, InlineUnitAxis};
 use posicast_testbench::blocks::Block;
 use posicast_testbench::component::ComponentBlock;
+use posicast_testbench::inline_shaper::InlineShaperBlock;
 use posicast_testbench::linked_stage::LinkedStageBlock;
 use std::path::Path;
 
@@ -21,6 +23,8 @@ use std::path::Path;
 pub(crate) const COMPONENT_SUFFIX: &str = "_avalon";
 /// Suffix of a stage's top module.
 pub(crate) const STAGE_SUFFIX: &str = "_stage";
+/// Suffix of an inline shaper's top module.
+pub(crate) const INLINE_SUFFIX: &str = "_inline";
 /// Suffix of the top module with a stage and its line to a host.
 pub(crate) const LINK_SUFFIX: &str = "_link";
 
@@ -36,6 +40,10 @@ pub(crate) struct Built<'a> {
     pub(crate) stage: Option<Stage>,
     /// The stage with its line to a host, if the machine file has one. Its top module is `<machine>_link`.
     pub(crate) link: Option<LinkedStageBlock>,
+    /// The inline shaper, if the commands come as step pulses. Its top module is `<machine>_inline`.
+    pub(crate) inline: Option<InlineShaperBlock>,
+    /// The figures of its axes.
+    inline_figures: Vec<InlineFigures>,
 }
 
 /// A stage: its settings from the machine file, and its hardware.
@@ -81,6 +89,12 @@ impl<'a> Built<'a> {
                 block: ComponentBlock::new(stage.component.clone(), &top, &axes.join(", ")).with_prefix(&machine.name),
             }
         });
+        let inline = hardware.inline().map_err(refused)?;
+        let inline_figures = inline.map_or_else(Vec::new, |inline| inline.axes.clone());
+        let inline = inline.map(|inline| {
+            let top = format!("{}{INLINE_SUFFIX}", machine.name);
+            InlineShaperBlock::new(inline.shaper.clone(), &top, &machine.name)
+        });
         let link = match (&machine.link, &stage) {
             (None, _) => None,
             (Some(link), Some(stage)) => Some(linked(machine, link, stage, path)?),
@@ -96,11 +110,29 @@ impl<'a> Built<'a> {
             components: components.collect(),
             stage,
             link,
+            inline,
+            inline_figures,
+        })
+    }
+
+    /// The inline shaper as the README tells its user.
+    pub(crate) fn inline_unit(&self) -> Option<InlineUnit> {
+        let axes = self.machine.axes.iter().zip(&self.inline_figures);
+        let axes = axes.map(|(axis, figures)| InlineUnitAxis {
+            name: axis.name.clone(),
+            input_hz: figures.input_hz,
+            shaped_s: figures.shaped_s,
+            unshaped_s: figures.unshaped_s,
+            settle_s: figures.settle_s,
+        });
+        self.inline.as_ref().map(|inline| InlineUnit {
+            top: inline.top(),
+            axes: axes.collect(),
         })
     }
 
     /// The Verilog modules without duplicates: those of the machine's top, then those of its components, of its stage,
-    /// and of its line. `path` is the machine file.
+    /// of its inline shaper, and of its line. `path` is the machine file.
     pub(crate) fn modules(&self, path: &Path) -> Result<Vec<Module>, Failure> {
         let mut modules = emit_machine(&self.machine.name, &self.shapers).map_err(Failure::because)?;
         for component in &self.components {
@@ -108,6 +140,12 @@ impl<'a> Built<'a> {
         }
         if let Some(stage) = &self.stage {
             add(&mut modules, stage.modules(path)?).map_err(Failure::because)?;
+        }
+        if let Some(inline) = &self.inline {
+            let of_inline = inline
+                .modules()
+                .map_err(|error| at_key(path, 0, NAME_KEY, format_args!("{error}; rename an axis")))?;
+            add(&mut modules, of_inline).map_err(Failure::because)?;
         }
         if let Some(link) = &self.link {
             add(&mut modules, link.modules().map_err(Failure::because)?).map_err(Failure::because)?;

@@ -20,6 +20,7 @@ pub(crate) fn files(machine: &Machine, modules: &[Module], built: &Built<'_>) ->
             Some(BridgeConfig::Uart(_)) => BuiltBlocks::LinkedStage,
             None => BuiltBlocks::Stage,
         },
+        (None, _) if built.inline.is_some() => BuiltBlocks::Inline,
         (None, false) => BuiltBlocks::Components,
         (None, true) => BuiltBlocks::Shapers,
     };

@@ -9,7 +9,7 @@ use crate::warning::Warning;
 use posicast_hdl::linked_stage::emit_bridge;
 use posicast_machine::machine_file::{AxisSection, Machine};
 use posicast_synth::package::Package;
-use posicast_synth::sopc::{Board, BridgeUnit, Design, Unit};
+use posicast_synth::sopc::{Board, BridgeUnit, Design, InlineUnit, Unit};
 use posicast_testbench::blocks::Block;
 use posicast_testbench::component::ComponentBlock;
 use posicast_testbench::linked_stage::LinkedStageBlock;
@@ -51,6 +51,7 @@ pub(crate) fn add(
     board: Option<Board>,
     (stage, link): (Option<&Stage>, Option<&LinkedStageBlock>),
     components: &[ComponentBlock],
+    inline: Option<InlineUnit>,
     observer: &dyn Observer,
 ) -> Result<(), Failure> {
     let tops: Vec<String> = components.iter().map(Block::top).collect();
@@ -75,6 +76,7 @@ pub(crate) fn add(
         link: link.map(|link| bridge(link, machine)).transpose()?,
         active_low_axes: active_low.map(|axis| axis.name.as_str()).collect(),
         components: components?,
+        inline,
     };
     if let Some(board) = board.filter(|board| design.stage.is_some() && !design.runs_on(*board)) {
         let text = format!(

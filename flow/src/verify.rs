@@ -194,6 +194,10 @@ impl Job {
                 others.extend(dense.map(|block| Box::new(block) as Box<dyn Block>));
             }
         }
+        if let Some(inline) = built.inline {
+            others.extend(inline.inner().map_err(bench::failure)?);
+            others.push(Box::new(inline));
+        }
         let folder = folder.map(|contents| contents.rtl);
         if let Some(files) = &folder {
             let there = Sources::found(files.clone());

@@ -25,6 +25,9 @@ const LINK: [(&str, &str); 1] = pages!["uart_bridge"];
 /// Datasheets of machines whose line is SPI; its frames are described in the page above.
 const SPI_LINK: [(&str, &str); 1] = pages!["spi_bridge"];
 
+/// Datasheets of machines with an inline shaper.
+const INLINE: [(&str, &str); 4] = pages!["inline" "inline_axis" "pulse_counter" "step_generator"];
+
 /// Hardware of a machine in addition to the shapers of its top module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum BuiltBlocks {
@@ -38,20 +41,25 @@ pub enum BuiltBlocks {
     LinkedStage,
     /// A stage with SPI lines.
     SpiLinkedStage,
+    /// An inline shaper.
+    Inline,
 }
 
 /// The datasheets of a machine, as path in the output folder and text.
 pub fn files(built: BuiltBlocks) -> Vec<(String, String)> {
-    let components = COMPONENTS.iter().filter(|_| built >= BuiltBlocks::Components);
-    let stage = STAGE.iter().filter(|_| built >= BuiltBlocks::Stage);
-    let link = LINK.iter().filter(|_| built >= BuiltBlocks::LinkedStage);
-    let spi = SPI_LINK.iter().filter(|_| built >= BuiltBlocks::SpiLinkedStage);
+    let is_inline = built == BuiltBlocks::Inline;
+    let at_least = |least| move |_: &&(&str, &str)| !is_inline && built >= least;
+    let components = COMPONENTS.iter().filter(at_least(BuiltBlocks::Components));
+    let stage = STAGE.iter().filter(at_least(BuiltBlocks::Stage));
+    let link = LINK.iter().filter(at_least(BuiltBlocks::LinkedStage));
+    let spi = SPI_LINK.iter().filter(at_least(BuiltBlocks::SpiLinkedStage));
     let pages: Vec<_> = SHAPER
         .iter()
         .chain(components)
         .chain(stage)
         .chain(link)
         .chain(spi)
+        .chain(INLINE.iter().filter(|_| is_inline))
         .collect();
     let is_there = |name: &str| pages.iter().any(|(page, _)| *page == name);
     let file = |(name, text): &&(&str, &str)| (format!("{FOLDER}/{name}.md"), with_links_to(text, is_there));
@@ -108,6 +116,7 @@ mod tests {
             (BuiltBlocks::Components, 6),
             (BuiltBlocks::Stage, 15),
             (BuiltBlocks::LinkedStage, 16),
+            (BuiltBlocks::Inline, 5),
         ] {
             let files = files(built);
             assert_eq!(files.len(), pages);

@@ -36,9 +36,42 @@ pub(crate) fn design(document: &Document) -> String {
             .as_ref()
             .map_or_else(String::new, |joint| together(document, joint));
     }
+    text += &inline(document);
     text.extend(document.fronts.iter().map(front));
     text.extend(document.moves.iter().map(moves::compared));
     text
+}
+
+/// Delays and rates of an inline shaper.
+fn inline(document: &Document) -> String {
+    if document.inline.is_empty() {
+        return String::new();
+    }
+    let headings = [
+        "axis",
+        ">steps/s at most",
+        ">of the drive's lines",
+        ">overshoot",
+        ">delay ms",
+        ">bypassed ms",
+        ">at rest after ms",
+    ];
+    let mut table = Table::new(&headings);
+    for axis in &document.inline {
+        table.row([
+            axis.axis.clone(),
+            format!("{:.0}", axis.input_hz),
+            format!("{:.0}", axis.output_hz),
+            format!("{:.2}", axis.overshoot),
+            format!("{:.3}", axis.shaped_s * 1e3),
+            format!("{:.3}", axis.unshaped_s * 1e3),
+            format!("{:.1}", axis.settle_s * 1e3),
+        ]);
+    }
+    format!(
+        "\ninline shaper: from the controller's steps to those of the drive\n{}",
+        table.text("  ")
+    )
 }
 
 /// The parts of each axis's delay, and the remaining mismatch.

@@ -10,6 +10,9 @@ use std::path::Path;
 pub(crate) fn generate(document: &Document) -> String {
     let folder = Path::new(&document.folder);
     let top = match (document.top.as_slice(), document.line) {
+        ([shapers, inline], _) if document.has_inline => {
+            format!("top modules: {inline} (the inline shaper), {shapers} (the shapers alone)")
+        }
         ([shapers, stage], _) => format!("top modules: {shapers} (the shapers), {stage} (the whole stage)"),
         ([shapers, stage, link], Some(line)) => {
             format!(

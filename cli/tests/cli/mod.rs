@@ -31,6 +31,7 @@ mod host;
 mod host_udp;
 mod identify;
 mod identify_logs;
+mod inline;
 mod kit;
 #[cfg(unix)]
 mod missing_tools;

@@ -34,6 +34,28 @@ pub struct Document {
     /// The delays of the axes, if the machine file has `[stage]`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stage: Option<EqualDelays>,
+    /// Delays and rates of the axes, if their commands come as step pulses.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub inline: Vec<InlineAxisDocument>,
+}
+
+/// Delays and rates of an axis of an inline shaper.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct InlineAxisDocument {
+    /// Name of the axis.
+    pub axis: String,
+    /// Largest rate of the command that does not stop the axis, in steps per second.
+    pub input_hz: f64,
+    /// Largest rate of the drive's lines, in steps per second.
+    pub output_hz: f64,
+    /// Largest speed of the output over that of the command: 1 with positive taps.
+    pub overshoot: f64,
+    /// Delay of an even speed with shaping.
+    pub shaped_s: f64,
+    /// Delay of an even speed without shaping.
+    pub unshaped_s: f64,
+    /// Longest time from the last step of the command until every step has come out.
+    pub settle_s: f64,
 }
 
 /// The clock and the words of a machine.

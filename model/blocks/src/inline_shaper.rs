@@ -114,15 +114,6 @@ pub enum InlineError {
     Composition(#[from] CompositionError),
 }
 
-/// The names of the two lines of a step interface.
-pub fn line_names(mode: StepMode) -> [&'static str; 2] {
-    match mode {
-        StepMode::StepDirection => ["step", "direction"],
-        StepMode::UpDown => ["step_up", "step_down"],
-        StepMode::Quadrature => ["step_a", "step_b"],
-    }
-}
-
 /// The mode of the pulse counter that reads these lines.
 pub fn counter_mode(mode: StepMode) -> u64 {
     match mode {
@@ -160,7 +151,7 @@ impl InlineConfig {
         let tick_clocks = self.tick.tick_clocks();
         for axis in &self.axes {
             let name = || axis.name.clone();
-            if axis.filter_clocks > u32::from(FILTER_CLOCKS_MAX) {
+            if axis.filter_clocks > FILTER_CLOCKS_MAX {
                 return Err(InlineError::Filter {
                     axis: name(),
                     clocks: axis.filter_clocks,
@@ -215,7 +206,7 @@ impl InlineShaper {
             part: Box::new(|block, part| wire(config, block, part)),
             inputs: pins(config, &SHARED_INPUTS, |axis| input_pins(axis).to_vec()),
             outputs: pins(config, &SHARED_OUTPUTS, |axis| {
-                let lines = line_names(axis.steps.mode()).map(str::to_owned);
+                let lines = axis.steps.mode().line_names().map(str::to_owned);
                 [lines.to_vec(), CAUSES.map(str::to_owned).to_vec()].concat()
             }),
         };
@@ -243,7 +234,7 @@ impl InlineShaper {
 
 /// The input pins of an axis: the lines of the command.
 fn input_pins(axis: &InlineShaperAxis) -> [String; 2] {
-    line_names(axis.input).map(|line| format!("{line}_in"))
+    axis.input.line_names().map(|line| format!("{line}_in"))
 }
 
 /// The shared pins, then those of each axis.
@@ -283,7 +274,7 @@ fn join(axis: &InlineShaperAxis) -> Result<JoinedBlocks, CompositionError> {
     ];
     let blocks = blocks.map(|block| (block.name().to_owned(), block));
     let [pin_a, pin_b] = input_pins(axis);
-    let [line_a, line_b] = line_names(axis.steps.mode());
+    let [line_a, line_b] = axis.steps.mode().line_names();
     let owned = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
     let wiring = Wiring {
         part: Box::new(|block, part| match block {

@@ -32,6 +32,7 @@ pub(super) fn axis(shaper: ShaperChoice, modes: &[Mode]) -> AxisSection {
         error_table: None,
         trace: None,
         steps: None,
+        input: None,
         stepper: None,
     }
 }

@@ -57,6 +57,32 @@ pub struct Design<'a> {
     pub active_low_axes: Vec<&'a str>,
     /// The blocks that stand alone.
     pub components: Vec<Unit<'a>>,
+    /// The inline shaper, if it has one.
+    pub inline: Option<InlineUnit>,
+}
+
+/// An inline shaper, as the README tells its user.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InlineUnit {
+    /// Name of its top module.
+    pub top: String,
+    /// Its axes.
+    pub axes: Vec<InlineUnitAxis>,
+}
+
+/// Delays and rates of an axis of an inline shaper.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InlineUnitAxis {
+    /// Name of the axis.
+    pub name: String,
+    /// Largest rate of the command, in steps per second.
+    pub input_hz: f64,
+    /// Delay with shaping in s.
+    pub shaped_s: f64,
+    /// Delay without shaping in s.
+    pub unshaped_s: f64,
+    /// Longest time from the last step of the command to rest, in s.
+    pub settle_s: f64,
 }
 
 /// A file of the package.

@@ -6,7 +6,7 @@ use super::board::{Board, Processor};
 use super::core::{Core, Line};
 use super::pins::Pin;
 use super::unit::Unit;
-use super::{Design, system};
+use super::{Design, InlineUnit, system};
 use posicast_blocks::linked_stage::BridgeConfig;
 
 /// A board with a project, the project's content, and its pins.
@@ -16,6 +16,10 @@ type Project<'a> = (Board, Core<'a>, Vec<Pin>);
 pub(super) fn text(design: &Design<'_>, projects: &[Project<'_>]) -> String {
     let mut text = String::new();
     contents(&mut text, design, projects);
+    if let Some(unit) = &design.inline {
+        inline(&mut text, unit);
+        return text;
+    }
     if design.units().next().is_none() {
         text.push_str(
             "\nThe machine has only shapers: without a component with registers, there is nothing for Platform Designer. `kit/README.md` \
@@ -69,7 +73,13 @@ to overwrite a file that was edited, and names it.
         machine = design.machine,
         posicast = env!("CARGO_PKG_VERSION"),
     );
-    if design.units().next().is_none() {
+    if let Some(InlineUnit { top, .. }) = &design.inline {
+        let _ = writeln!(
+            text,
+            "| `rtl/{top}.v` | the inline shaper: between a controller's step pulses and the drives |"
+        );
+        text.push_str("| `docs/` | its page, and the datasheets of its blocks |\n");
+    } else if design.units().next().is_none() {
         text.push_str(
             "| `kit/` | for a design of your own: template of an instance, strobe, example with bench, scripts for Lattice and AMD |\n\
              | `docs/` | the shaper's datasheet |\n",
@@ -118,6 +128,30 @@ to overwrite a file that was edited, and names it.
          | `posicast.json` | which files are posicast's |\n\n\
          `wave/`, `plots/` and the report of a run are about the machine file and the Verilog here. Once either changes, \
          `posicast generate`\nremoves them and reports it.\n",
+    );
+}
+
+fn inline(text: &mut String, unit: &InlineUnit) {
+    let _ = write!(
+        text,
+        "\n## The inline shaper\n\n`docs/inline.md` says how to connect `{}`, what its pins do, and how to home and to probe.\n\n\
+         | axis | command at most, steps/s | delay, ms | delay while bypassed, ms | at rest after the last step, ms |\n|---|---|---|---|---|\n",
+        unit.top,
+    );
+    for axis in &unit.axes {
+        let _ = writeln!(
+            text,
+            "| {} | {:.0} | {:.3} | {:.3} | {:.1} |",
+            axis.name,
+            axis.input_hz,
+            axis.shaped_s * 1e3,
+            axis.unshaped_s * 1e3,
+            axis.settle_s * 1e3,
+        );
+    }
+    text.push_str(
+        "\nA controller that reads a switch or a probe in motion takes a position that lies ahead of the machine by speed times delay: home \
+         and\nprobe with `bypass`, and leave room behind limit switches.\n",
     );
 }
 

@@ -13,11 +13,13 @@
 mod axis;
 mod error;
 mod error_table;
+mod inline;
 mod stage;
 
 pub use axis::{AxisComponent, AxisHardware, AxisLoop};
 pub use error::HardwareError;
 pub use error_table::departure_counts as error_table_departure_counts;
+pub use inline::{InlineFigures, InlineHardware};
 pub use stage::{MachineStage, MachineStageError, TimedLoop, pwm_config, pwm_mode, stage};
 
 use crate::machine_file::Machine;
@@ -46,6 +48,7 @@ pub struct Hardware<'a> {
     axes: Vec<AxisHardware>,
     stage: Result<Option<StageHardware>, HardwareError>,
     without_stage: Option<HardwareError>,
+    inline: Result<Option<InlineHardware>, HardwareError>,
 }
 
 /// The stage of a machine, with its component.
@@ -80,6 +83,7 @@ impl<'a> Hardware<'a> {
             axes: axes.collect::<Result<_, _>>()?,
             stage,
             without_stage,
+            inline: inline::inline(machine, design),
         })
     }
 
@@ -94,6 +98,14 @@ impl<'a> Hardware<'a> {
     /// [`HardwareError`] where the machine file asks for a stage that cannot be built.
     pub fn stage(&self) -> Result<Option<&StageHardware>, HardwareError> {
         self.stage.as_ref().map(Option::as_ref).map_err(Clone::clone)
+    }
+
+    /// The inline shaper. `None` where the commands do not come as step pulses.
+    ///
+    /// # Errors
+    /// [`HardwareError`] where the machine file asks for an inline shaper that cannot be built.
+    pub fn inline(&self) -> Result<Option<&InlineHardware>, HardwareError> {
+        self.inline.as_ref().map(Option::as_ref).map_err(Clone::clone)
     }
 
     /// Why a machine whose loops are all complete has no stage: its shapers do not suit one. Else `None`.

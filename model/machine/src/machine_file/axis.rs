@@ -4,8 +4,8 @@ use super::key::{Default, Key, Values};
 use super::range::COUNTS_PER_UNIT;
 use super::table::Table;
 use super::{
-    AxisSection, ClockSection, FixedPoint, ScaleUse, controller, drive, encoder, error_table, limits, mechanics, mode,
-    moving, pwm, scale, shaper, stepper, steps, trace,
+    AxisSection, ClockSection, FixedPoint, ScaleUse, controller, drive, encoder, error_table, input, limits, mechanics,
+    mode, moving, pwm, scale, shaper, stepper, steps, trace,
 };
 use crate::unit::AxisUnit;
 use posicast_blocks::shaper::MOTION_WORD_BITS;
@@ -73,6 +73,12 @@ pub(super) const KEYS: &[Key] = &[
         "Stepper motor behind the steps, for the simulation. Absent: a drive that is always at its steps.",
     ),
     Key::new(
+        "input",
+        Values::Table(input::KEYS),
+        "Lines of a controller whose step pulses are shaped, in place of a host's commands.",
+    )
+    .rule("needs `[axis.steps]`, on every axis of the machine"),
+    Key::new(
         "limits",
         Values::Table(limits::KEYS),
         "Limits of moves, and settings of the supervisor.",
@@ -126,6 +132,7 @@ pub(super) fn read(
     let controller = table.table("controller").map(|t| controller::read(&t, unit));
     let steps = table.table("steps").map(|t| (steps::read(&t, clock), t));
     let stepper = table.table("stepper").map(|t| stepper::read(&t, unit));
+    let input = table.table("input").map(|t| (input::read(&t, clock), t));
     let scale = table.table("scale").map(|t| scale::read(table, &t, unit));
     let trace = table.table("trace").map(|t| trace::read(&t));
     let loop_counts_per_unit = match scale {
@@ -157,6 +164,9 @@ pub(super) fn read(
         };
         steps::check(table, steps, &of_axis);
     }
+    if let Some((Some(input), table)) = &input {
+        input::check(table, input, limits.as_ref(), counts_per_unit);
+    }
     if let Some(family) = family.as_ref().and_then(Option::as_ref) {
         moving::check(table, family, kind, limits.as_ref(), modulo, unit);
     }
@@ -178,6 +188,7 @@ pub(super) fn read(
         drive: not_refused(drive)?,
         controller: not_refused(controller)?,
         steps: not_refused(steps.map(|(steps, _)| steps))?,
+        input: not_refused(input.map(|(input, _)| input))?,
         stepper: not_refused(stepper)?,
         limits,
         scale: not_refused(scale)?,
@@ -235,7 +246,7 @@ pub(super) struct Need {
 }
 
 /// Blocks of an axis that need other blocks.
-pub(super) const NEEDS: [Need; 7] = [
+pub(super) const NEEDS: [Need; 8] = [
     Need {
         block: "scale",
         others: &["encoder"],
@@ -267,6 +278,12 @@ pub(super) const NEEDS: [Need; 7] = [
         allowed: "a stepper motor with [axis.steps], which turn its field",
     },
     Need {
+        block: "input",
+        others: &["steps"],
+        or: None,
+        allowed: "an input with [axis.steps], the lines of the drive that get its shaped steps",
+    },
+    Need {
         block: "error_table",
         others: &["controller"],
         or: Some("steps"),
@@ -279,6 +296,9 @@ pub(super) const NEEDS: [Need; 7] = [
         allowed: "a trace with [axis.controller] or [axis.steps], whose signals it records",
     },
 ];
+
+/// The tables that an inline shaper has no block for.
+const NOT_WITH_INPUT: [&str; 4] = ["scale", "error_table", "trace", "family"];
 
 /// The blocks that `[axis.steps]` replaces.
 pub(super) const REPLACED_BY_STEPS: [&str; 4] = ["encoder", "pwm", "drive", "controller"];
@@ -303,6 +323,14 @@ fn check_needs(axis: &Table<'_, '_>) {
             let remedy = format!("add {missing}, or remove [axis.{block}]");
             axis.contradiction(block, found, allowed, remedy);
         }
+    }
+    for other in NOT_WITH_INPUT
+        .into_iter()
+        .filter(|other| axis.has("input") && axis.has(other))
+    {
+        let found = format!("[axis.{other}] beside [axis.input]");
+        let allowed = "an axis whose command comes from a host: an inline shaper only counts, shapes and gives steps";
+        axis.contradiction(other, found, allowed, format!("remove [axis.{other}], or [axis.input]"));
     }
     for other in REPLACED_BY_STEPS
         .into_iter()

@@ -306,12 +306,13 @@ fn check_needs(axis: &Table<'_, '_>, table: &Table<'_, '_>) {
     let supervised = KEYS.iter().skip(OF_MOVES).map(|key| key.name);
     for key in supervised.filter(|key| table.has(key)) {
         // A misspelt table has been reported already.
-        if axis.lacks("controller") && axis.lacks("steps") {
-            let or = if OF_A_LOOP.contains(&key) {
-                ""
-            } else {
-                " or [axis.steps]"
-            };
+        if axis.has("input") {
+            let found = format!("{key} with [axis.input]");
+            let allowed =
+                format!("{key} on an axis whose command comes from a host: an inline shaper has no supervisor");
+            table.contradiction(key, found, allowed, format!("remove `{key}`"));
+        } else if axis.lacks("controller") && axis.lacks("steps") {
+            let or = if OF_A_LOOP.contains(&key) { "" } else { " or [axis.steps]" };
             let allowed = format!("{key} on an axis with [axis.controller]{or}, which has a supervisor");
             need(table, key, "[axis.controller]", allowed);
         } else if OF_A_LOOP.contains(&key) && axis.has("steps") {

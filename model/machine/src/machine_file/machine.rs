@@ -6,7 +6,7 @@ use super::hint::{self, KILO, MEGA_OR_KILO};
 use super::key::{Default, Key, Values};
 use super::range::{NumberRange, RATIO_ROUNDING};
 use super::table::Table;
-use super::{AxisSection, ClockSection, FixedPoint, LinkSection, Machine, Target, axis, link, stage};
+use super::{AxisSection, ClockSection, FixedPoint, LinkSection, Machine, StageSection, Target, axis, link, stage};
 use crate::spelling::same_letters;
 use posicast_blocks::shaper::WORD_BITS;
 use posicast_shaper::digitise::Digitise;
@@ -132,7 +132,11 @@ pub(super) fn read(root: &Table<'_, '_>) -> Option<Machine> {
         stage::check(&table, &stage, axes.as_deref().unwrap_or_default());
         stage
     });
+    check_inputs(root, axes.as_deref().unwrap_or_default());
     let link = read_link(root, clock, axes.as_deref());
+    // The delays of an inline shaper's axes are always made equal.
+    let has_inputs = axes.iter().flatten().any(|axis| axis.input.is_some());
+    let stage = stage.or_else(|| has_inputs.then(StageSection::default));
     Some(Machine {
         name: name?,
         clock: clock?,
@@ -144,13 +148,34 @@ pub(super) fn read(root: &Table<'_, '_>) -> Option<Machine> {
     })
 }
 
+/// Checks that every axis has an input, or none.
+fn check_inputs(root: &Table<'_, '_>, axes: &[AxisSection]) {
+    let with = axes.iter().find(|axis| axis.input.is_some());
+    let without = axes.iter().find(|axis| axis.input.is_none());
+    if let (Some(with), Some(without)) = (with, without) {
+        root.contradiction(
+            "axis",
+            format!("axis {} with [axis.input] and axis {} without", with.name, without.name),
+            "[axis.input] on every axis, whose commands come as step pulses, or on none",
+            format!("add [axis.input] to axis {}, or make two machine files", without.name),
+        );
+    } else if with.is_some() && root.has("link") {
+        root.contradiction(
+            "link",
+            "[link] beside [axis.input]",
+            "[link] on a machine whose commands come from a host: an inline shaper has no registers",
+            "remove [link]",
+        );
+    }
+}
+
 fn read_link(root: &Table<'_, '_>, clock: Option<ClockSection>, axes: Option<&[AxisSection]>) -> Option<LinkSection> {
     let link = root.table("link").and_then(|table| link::read(&table, clock));
     // Where the axes have a problem, it is the one to mend first.
     let lacks = |axis: &&AxisSection| {
         axis.encoder.is_none() || axis.pwm.is_none() || axis.drive.is_none() || axis.controller.is_none()
     };
-    if let Some(axis) = axes?.iter().find(lacks)
+    if let Some(axis) = axes?.iter().find(lacks).filter(|axis| axis.input.is_none())
         && link.is_some()
     {
         root.contradiction(

@@ -34,6 +34,7 @@ mod encoder;
 mod error;
 mod error_table;
 mod hint;
+mod input;
 mod key;
 mod limits;
 mod link;
@@ -62,6 +63,7 @@ pub use drive::{Drive, DriveMode};
 pub use encoder::Encoder;
 pub use error::{MAX_PROBLEMS, Problem, ProblemCause, SpecError};
 pub use error_table::{ErrorTableSection, ErrorUse, STEEPEST_IN_FILE};
+pub use input::{BeyondLimits, InputSection, MOST_INPUT_HZ};
 pub use limits::LimitsSection;
 pub use link::{BridgeConfigError, LinkLine, LinkSection};
 pub use machine::{BOARDS, FAMILIES};
@@ -256,6 +258,8 @@ pub struct AxisSection {
     pub steps: Option<StepsSection>,
     /// `[axis.stepper]`; only with steps.
     pub stepper: Option<StepperSection>,
+    /// `[axis.input]`; only with steps, and on every axis or none.
+    pub input: Option<InputSection>,
     /// `[axis.limits]`.
     pub limits: Option<LimitsSection>,
     /// `[axis.scale]`; only with an encoder or steps.
@@ -267,9 +271,10 @@ pub struct AxisSection {
 }
 
 impl AxisSection {
-    /// Whether the axis has more than a shaper.
+    /// Whether the axis has more than a shaper, for a host to operate. An axis whose command comes as step pulses has no host.
     pub fn has_loop(&self) -> bool {
-        self.encoder.is_some() || self.pwm.is_some() || self.controller.is_some() || self.steps.is_some()
+        self.input.is_none()
+            && (self.encoder.is_some() || self.pwm.is_some() || self.controller.is_some() || self.steps.is_some())
     }
 
     /// Counts per m or rad of the counter that the position loop runs on: the encoder's, or the scale's where that is
