@@ -82,7 +82,8 @@ pub struct Measured {
 /// Those of [`library`].
 pub fn subjects() -> Result<Vec<Box<dyn Block>>, Error> {
     let mut blocks = library()?;
-    blocks.retain(|block| !block.instance().ends_with(ON_A_BUS));
+    // The inline shaper only joins blocks, each of which has its own row.
+    blocks.retain(|block| !block.instance().ends_with(ON_A_BUS) && block.name() != "inline_shaper");
     let [dead_time, minimum_pulse] = PWM_FLOORS_CLOCKS;
     let pwm = PwmConfig::new(ActiveLow::default(), dead_time, minimum_pulse)
         .map_err(|error| Error::Option(format!("the PWM of the coverage: {error}")))?;
