@@ -405,3 +405,63 @@ fn what_cannot_be_built_is_refused() {
     assert!(matches!(refused(vec![filtered], 200), InlineError::Filter { .. }));
     assert!(InlineAxisConfig::new(0, 1).is_err() && InlineAxisConfig::new(1, 0).is_err());
 }
+
+/// Lines for two million steps per second at 50 MHz: 12 + 13 clocks in, 12 + 12 out.
+fn fast() -> InlineConfig {
+    let times = StepTimes {
+        pulse_clocks: 12,
+        space_clocks: 12,
+        direction_setup_clocks: 12,
+        direction_hold_clocks: 12,
+    };
+    let tick_clocks = 1000;
+    let steps = StepGeneratorConfig::new(tick_clocks, INLINE_FRACTION, StepMode::StepDirection, times, 100).unwrap();
+    InlineConfig {
+        tick: DividerConfig::new(tick_clocks).unwrap(),
+        axes: vec![InlineShaperAxis {
+            filter_clocks: 8,
+            follower: InlineAxisConfig::new(41, 8).unwrap(),
+            steps,
+            ..plain()
+        }],
+    }
+}
+
+/// Rides up by this many steps at two million a second, and stands; returns what the drive has counted, and whether there was a
+/// fault.
+fn rides(steps: u64) -> (i64, bool) {
+    let mut model = InlineShaper::new(&fast()).unwrap().model(3);
+    let ports = model.ports().iter().filter(|port| port.direction == Direction::Output);
+    let names: Vec<String> = ports.map(|port| port.name.clone()).collect();
+    let at = |name: &str| names.iter().position(|other| other == name).unwrap();
+    let (step, direction, fault) = (at("x_step"), at("x_direction"), at("fault"));
+    let mut drive = Reader::new(StepMode::StepDirection);
+    let (mut seen, mut faulty) = (vec![0; names.len()], false);
+    let mut hold = |level: u64, clocks: u64| {
+        let mut left = clocks;
+        while left > 0 {
+            left -= model.hold(&[0, 1, 1, 0, 0, level, 1], left, &mut seen).unwrap();
+            drive.reads([seen[step] == 1, seen[direction] == 1]);
+            faulty |= seen[fault] == 1;
+        }
+    };
+    hold(0, 5000);
+    for _ in 0..steps {
+        hold(1, 12);
+        hold(0, 13);
+    }
+    hold(0, 20_000);
+    (drive.count, faulty)
+}
+
+#[test]
+fn two_million_steps_per_second_come_out() {
+    assert_eq!(rides(20_000), (20_000, false));
+}
+
+/// Positions have 24 bits of whole steps.
+#[test]
+fn long_a_ride_beyond_the_end_of_the_position_loses_no_step() {
+    let steps = (1 << 23) + 50_000;
+    assert_eq!(rides(steps), (steps as i64, false));
+}
