@@ -60,7 +60,12 @@ fn cli_inline_verilog_equals_its_model() {
 
 #[test]
 fn cli_inline_pulses_that_the_filter_swallows_are_refused() {
-    let words = ["machine.toml:30", "axis.input.pulse_s", "240.0 ns", "lower filter_clocks"];
+    let words = [
+        "machine.toml:30",
+        "axis.input.pulse_s",
+        "240.0 ns",
+        "lower filter_clocks",
+    ];
     refused("pulse_s = 5e-6  ", "pulse_s = 0.2e-6", &words);
 }
 

@@ -210,3 +210,23 @@ fn formal_a_direction_that_changes_with_the_end_of_a_pulse_is_found() {
         "known_held",
     );
 }
+
+#[test]
+fn formal_a_limit_of_the_input_that_is_one_too_high_is_found() {
+    fails(
+        "inline_axis",
+        "biased > MOST",
+        "biased > (MOST + 18'd1)",
+        "stops_at_once",
+    );
+}
+
+#[test]
+fn formal_shaping_that_changes_in_motion_is_found() {
+    fails(
+        "inline_group",
+        "tick & (all_settled | !run_q)",
+        "tick",
+        "changes_at_rest",
+    );
+}
