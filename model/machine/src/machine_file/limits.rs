@@ -312,7 +312,11 @@ fn check_needs(axis: &Table<'_, '_>, table: &Table<'_, '_>) {
                 format!("{key} on an axis whose command comes from a host: an inline shaper has no supervisor");
             table.contradiction(key, found, allowed, format!("remove `{key}`"));
         } else if axis.lacks("controller") && axis.lacks("steps") {
-            let or = if OF_A_LOOP.contains(&key) { "" } else { " or [axis.steps]" };
+            let or = if OF_A_LOOP.contains(&key) {
+                ""
+            } else {
+                " or [axis.steps]"
+            };
             let allowed = format!("{key} on an axis with [axis.controller]{or}, which has a supervisor");
             need(table, key, "[axis.controller]", allowed);
         } else if OF_A_LOOP.contains(&key) && axis.has("steps") {
