@@ -204,3 +204,25 @@ fn an_emergency_stop_ends_the_steps_at_once_and_loses_no_count() {
     assert_eq!([bed.x.disabled_steps, bed.y.disabled_steps], [0, 0]);
     assert_eq!(bed.net("x_causes") & 1, 1);
 }
+
+#[test]
+fn steps_that_no_stage_gives_are_an_error() {
+    let loopless = TEXT.replacen(
+        "[axis.steps]\nmode = \"up_down\"\npulse_s = 2e-6\ndirection_setup_s = 5e-6\nactive_low = [\"step_down\"]\n",
+        "",
+        1,
+    );
+    let loopless = loopless.replace("soft_limits_after_homing = true\n", "");
+    assert_ne!(loopless, TEXT);
+    let machine = machine_file::parse("steps.toml", &loopless).unwrap();
+    let hardware = hardware::Hardware::of(&machine, &design_machine(&machine).unwrap()).unwrap();
+    let error = hardware.stage().unwrap_err();
+    assert_eq!((error.axis, error.key.as_str()), (1, "axis"));
+    assert!(
+        error
+            .reason
+            .contains("axis `y` has neither [axis.steps] nor a whole loop"),
+        "{}",
+        error.reason
+    );
+}

@@ -22,7 +22,7 @@ pub use error_table::departure_counts as error_table_departure_counts;
 pub use inline::{InlineFigures, InlineHardware};
 pub use stage::{MachineStage, MachineStageError, TimedLoop, pwm_config, pwm_mode, stage};
 
-use crate::machine_file::Machine;
+use crate::machine_file::{AxisSection, Machine};
 use crate::plan::MachineDesign;
 use posicast_blocks::component::Component;
 use posicast_blocks::divider::DividerConfig;
@@ -137,7 +137,7 @@ impl<'a> Hardware<'a> {
     /// [`HardwareError`] for a block that the machine file asks for and that cannot be built.
     pub fn components(&self) -> Result<Vec<AxisComponent>, HardwareError> {
         let mut components = Vec::new();
-        if !self.machine.axes.iter().any(crate::machine_file::AxisSection::has_loop) {
+        if !self.machine.axes.iter().any(AxisSection::has_loop) {
             return Ok(components);
         }
         for (index, (axis, built)) in self.machine.axes.iter().zip(&self.axes).enumerate() {
@@ -152,14 +152,37 @@ impl<'a> Hardware<'a> {
     }
 }
 
-/// Makes the stage with its component. If the machine's shapers do not suit a stage, it returns `None` and sets `reason`.
+/// The axis to blame if steps of a machine cannot be given, because another axis has neither steps nor a whole loop: `None` if no
+/// axis has steps, or all can be in one stage.
+fn without_steps(machine: &Machine) -> Option<HardwareError> {
+    let stepped = machine.axes.iter().find(|axis| axis.steps.is_some())?;
+    let lacks = |axis: &AxisSection| {
+        let looped = axis.encoder.is_some() && axis.pwm.is_some() && axis.drive.is_some() && axis.controller.is_some();
+        axis.steps.is_none() && !looped
+    };
+    let index = machine.axes.iter().position(lacks)?;
+    let reason = format!(
+        "axis `{}` has neither [axis.steps] nor a whole loop, so there is no stage that gives the steps of axis `{}`",
+        machine.axes[index].name, stepped.name
+    );
+    let help = "add [axis.steps], or [axis.encoder], [axis.pwm], [axis.drive] and [axis.controller]; or describe the axis in a file of \
+                its own";
+    Some(HardwareError::new(index, "axis", reason).with_help(help.to_owned()))
+}
+
+/// Makes the stage with its component. If the machine's shapers do not suit a stage, it returns `None` and sets `reason`; with steps,
+/// which only a stage gives, that is an error.
 fn complete_stage(
     machine: &Machine,
     design: &MachineDesign,
     reason: &mut Option<HardwareError>,
 ) -> Result<Option<StageHardware>, HardwareError> {
+    let needs_stage = machine.axes.iter().any(|axis| axis.steps.is_some());
+    if let Some(error) = without_steps(machine) {
+        return Err(error);
+    }
     // A machine with only shapers may have words and delays that a stage does not allow; it needs no stage.
-    if !machine.axes.iter().all(crate::machine_file::AxisSection::has_loop) {
+    if !machine.axes.iter().all(AxisSection::has_loop) {
         return Ok(None);
     }
     let of_machine = match stage(machine, design) {
@@ -167,7 +190,11 @@ fn complete_stage(
         Ok(None) => return Ok(None),
         Err(error @ MachineStageError::Shaper { .. }) => {
             let (axis, key) = error.key();
-            *reason = Some(HardwareError::new(axis, &key, error));
+            let refused = HardwareError::new(axis, &key, error);
+            if needs_stage {
+                return Err(refused);
+            }
+            *reason = Some(refused);
             return Ok(None);
         }
         Err(error) => {
@@ -183,7 +210,11 @@ fn complete_stage(
         Ok(component) => Ok(Some(StageHardware { of_machine, component })),
         Err(error @ (StageError::Axes(_) | StageError::Channels { .. })) => {
             let (axis, key) = to_blame(&of_machine, &error);
-            *reason = Some(HardwareError::new(axis, key, error));
+            let refused = HardwareError::new(axis, key, error);
+            if needs_stage {
+                return Err(refused);
+            }
+            *reason = Some(refused);
             Ok(None)
         }
         Err(error) => {

@@ -98,7 +98,8 @@ pub fn mode_lag_s(axis: &AxisSection) -> f64 {
         return 0.0;
     }
     let modes = axis.modes.iter().map(|axis_mode| axis_mode.mode);
-    modes.map(|mode| 2.0 * mode.damping / mode.omega()).sum()
+    // `sum` would be -0 without a mode.
+    modes.fold(0.0, |lag_s, mode| lag_s + 2.0 * mode.damping / mode.omega())
 }
 
 /// Delays the taps of all axes, and the further tables of an axis, to one total where the machine has `[stage]`;
