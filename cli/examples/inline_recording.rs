@@ -166,8 +166,9 @@ fn run() -> Result<bool, Box<dyn Error>> {
             y_label: "y, mm".to_owned(),
             curves: vec![
                 Curve::under("command", path(&x.command, &y.command)),
-                Curve::new("without the shaper", path(&x.plain_load, &y.plain_load)),
+                // The first is drawn on top.
                 Curve::new("with the shaper", path(&x.shaped_load, &y.shaped_load)),
+                Curve::new("without the shaper", path(&x.plain_load, &y.plain_load)),
             ],
             ..Panel::default()
         });
@@ -347,8 +348,8 @@ fn panel(title: &str, track: &Track, period_s: f64) -> Panel {
         x_label: "time, s".to_owned(),
         y_label: "distance, mm".to_owned(),
         curves: vec![
-            Curve::new("without the shaper", away(&track.command, &track.plain_load)),
             Curve::new("with the shaper", away(&track.drive, &track.shaped_load)),
+            Curve::new("without the shaper", away(&track.command, &track.plain_load)),
         ],
         ..Panel::default()
     }

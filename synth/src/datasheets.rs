@@ -17,8 +17,9 @@ const SHAPER: [(&str, &str); 1] = pages!["shaper"];
 /// Datasheets of machines with components.
 const COMPONENTS: [(&str, &str); 5] = pages!["registers" "pulse_counter" "divider" "pwm" "sliding_mode"];
 /// Datasheets of machines with a stage.
-const STAGE: [(&str, &str); 9] = pages![
+const STAGE: [(&str, &str); 10] = pages![
     "stage" "axis" "segments" "drive_command" "linear_scale" "error_table" "encoder_generator" "excitation" "trace"
+    "step_generator"
 ];
 /// Datasheets of machines whose stage has a line to a host.
 const LINK: [(&str, &str); 1] = pages!["uart_bridge"];
@@ -114,8 +115,8 @@ mod tests {
         for (built, pages) in [
             (BuiltBlocks::Shapers, 1),
             (BuiltBlocks::Components, 6),
-            (BuiltBlocks::Stage, 15),
-            (BuiltBlocks::LinkedStage, 16),
+            (BuiltBlocks::Stage, 16),
+            (BuiltBlocks::LinkedStage, 17),
             (BuiltBlocks::Inline, 5),
         ] {
             let files = files(built);

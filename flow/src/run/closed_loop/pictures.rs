@@ -128,7 +128,13 @@ impl ClosedLoop<'_> {
             .for_largest(samples.iter().map(|sample| sample.error * count));
         let per_count = unit.of(count);
         Panel {
-            title: self.title(axis, "what the controller sees of the error"),
+            title: self.title(
+                axis,
+                match of_axis.steps {
+                    None => "what the controller sees of the error",
+                    Some(_) => "distance of the counted steps from the shaped position",
+                },
+            ),
             x_label: label("time", self.time()),
             y_label: label("error", unit),
             curves: vec![Curve::new(
