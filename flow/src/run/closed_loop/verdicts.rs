@@ -58,7 +58,12 @@ impl ClosedLoop<'_> {
                 counted(most, "step")
             ),
         };
-        Some(Check::new("no motor loses a step", worst.1 == 0, detail))
+        // Without [axis.stepper] the drive is always at its steps: no motor was asked.
+        let name = match motors {
+            0 => "no step comes while its drive is off",
+            _ => "no motor loses a step",
+        };
+        Some(Check::new(name, worst.1 == 0, detail))
     }
 
     fn without_trouble(&self) -> Check {
