@@ -117,10 +117,7 @@ impl<'a> Decoder<'a> {
     fn new(routing: &'a Routing<'a>) -> Self {
         Self {
             routing,
-            network: Network {
-                names: vec!["low".to_owned(), "high".to_owned()],
-                ..Network::default()
-            },
+            network: Network::of_constants(),
             nets: HashMap::new(),
             functions: HashMap::new(),
             waiting: Vec::new(),
@@ -128,18 +125,12 @@ impl<'a> Decoder<'a> {
         }
     }
 
-    fn new_net(&mut self, name: String) -> NetIndex {
-        let net = self.network.names.len() as NetIndex;
-        self.network.names.push(name);
-        net
-    }
-
     /// The net of an output, whose cell is decoded later.
     pub(super) fn net(&mut self, output: CellPort) -> NetIndex {
         if let Some(net) = self.nets.get(&output) {
             return *net;
         }
-        let net = self.new_net(output.identifier());
+        let net = self.network.new_net(output.identifier());
         self.nets.insert(output, net);
         self.waiting.push(output);
         net
@@ -161,7 +152,7 @@ impl<'a> Decoder<'a> {
             HIGH => LOW,
             net => {
                 let name = format!("not_{}", self.network.names[net as usize]);
-                let output = self.new_net(name);
+                let output = self.network.new_net(name);
                 self.network.gates.push(Gate::new(output, &[net], 0b01));
                 output
             }
@@ -170,13 +161,7 @@ impl<'a> Decoder<'a> {
 
     /// Checks that something drives every output that is in use.
     fn check_driven(&self) -> Result<(), BitstreamError> {
-        let network = &self.network;
-        let read = network.memories.iter().flat_map(NetworkMemory::outputs);
-        let driven: HashSet<NetIndex> = (network.inputs.iter().map(|(_, net)| *net))
-            .chain(network.gates.iter().map(|gate| gate.output))
-            .chain(network.states.iter().map(|state| state.output))
-            .chain(read)
-            .collect();
+        let driven = self.network.driven();
         match self.nets.iter().find(|(_, net)| !driven.contains(net)) {
             Some((output, _)) => Err(unknown(*output, "an output of a port that also writes")),
             None => Ok(()),
@@ -270,7 +255,7 @@ impl<'a> Decoder<'a> {
         }
         let values = SliceSettings::new(self.routing, row, column, table).table()?;
         let inputs = self.table_inputs(row, column, table)?;
-        let net = self.new_net(format!("r{row}c{column}_function{table}"));
+        let net = self.network.new_net(format!("r{row}c{column}_function{table}"));
         self.network.gates.push(Gate::new(net, &inputs, values));
         self.functions.insert((row, column, table), net);
         Ok(net)

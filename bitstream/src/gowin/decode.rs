@@ -131,10 +131,7 @@ impl<'a> GowinDecoder<'a> {
     fn new(routing: &'a GowinRouting<'a>) -> Self {
         Self {
             routing,
-            network: Network {
-                names: vec!["low".to_owned(), "high".to_owned()],
-                ..Network::default()
-            },
+            network: Network::of_constants(),
             nets: HashMap::new(),
             functions: HashMap::new(),
             waiting: Vec::new(),
@@ -142,18 +139,12 @@ impl<'a> GowinDecoder<'a> {
         }
     }
 
-    pub(super) fn new_net(&mut self, name: String) -> NetIndex {
-        let net = self.network.names.len() as NetIndex;
-        self.network.names.push(name);
-        net
-    }
-
     /// The net of an output, whose cell is decoded later.
     pub(super) fn net(&mut self, output: GowinOutput) -> NetIndex {
         if let Some(net) = self.nets.get(&output) {
             return *net;
         }
-        let net = self.new_net(output.identifier());
+        let net = self.network.new_net(output.identifier());
         self.nets.insert(output, net);
         self.waiting.push(output);
         net
@@ -177,13 +168,7 @@ impl<'a> GowinDecoder<'a> {
 
     /// Checks that something drives every output that is in use.
     fn check_driven(&self) -> Result<(), BitstreamError> {
-        let network = &self.network;
-        let read = network.memories.iter().flat_map(NetworkMemory::outputs);
-        let driven: HashSet<NetIndex> = (network.inputs.iter().map(|(_, net)| *net))
-            .chain(network.gates.iter().map(|gate| gate.output))
-            .chain(network.states.iter().map(|state| state.output))
-            .chain(read)
-            .collect();
+        let driven = self.network.driven();
         match self.nets.iter().find(|(_, net)| !driven.contains(net)) {
             Some((output, _)) => Err(unknown(*output, "a bit of a memory that nothing writes")),
             None => Ok(()),
@@ -260,7 +245,9 @@ impl<'a> GowinDecoder<'a> {
             Some(false) => LOW,
             Some(true) => HIGH,
             None => {
-                let net = self.new_net(format!("r{}c{}_function{table}", of.row, of.column));
+                let net = self
+                    .network
+                    .new_net(format!("r{}c{}_function{table}", of.row, of.column));
                 self.table(of, table, net)?;
                 net
             }

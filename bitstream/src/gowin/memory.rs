@@ -171,7 +171,7 @@ pub(super) fn decode(
         let source = port_source(routing, place, &format!("DI{bit}"))?;
         if source == GowinSource::Nothing {
             data.push(LOW);
-            read.push(decoder.new_net(format!("r{row}c{column}_unwritten{output}")));
+            read.push(decoder.network.new_net(format!("r{row}c{column}_unwritten{output}")));
         } else {
             data.push(decoder.driven(source, of)?);
             read.push(decoder.net(GowinOutput { port, ..of }));

@@ -7,6 +7,8 @@ mod verilog;
 pub use block_ram::{BlockRam, RamPort, RamWrite};
 pub use simulate::NetlistSimulation;
 
+use std::collections::HashSet;
+
 use crate::ice40::MemoryCell;
 
 /// A net. The first two are the constants.
@@ -68,6 +70,35 @@ impl NetworkMemory {
             Self::Ice40(cell) => cell.place.to_string(),
             Self::Plain(ram) => ram.name.clone(),
         }
+    }
+}
+
+impl Network {
+    /// A network of the two constants alone.
+    #[must_use]
+    pub fn of_constants() -> Self {
+        Self {
+            names: vec!["low".to_owned(), "high".to_owned()],
+            ..Self::default()
+        }
+    }
+
+    /// Adds a net, which nothing drives yet.
+    pub fn new_net(&mut self, name: String) -> NetIndex {
+        let net = self.names.len() as NetIndex;
+        self.names.push(name);
+        net
+    }
+
+    /// The nets that an input, a gate, a register or a memory drives.
+    #[must_use]
+    pub fn driven(&self) -> HashSet<NetIndex> {
+        let read = self.memories.iter().flat_map(NetworkMemory::outputs);
+        (self.inputs.iter().map(|(_, net)| *net))
+            .chain(self.gates.iter().map(|gate| gate.output))
+            .chain(self.states.iter().map(|state| state.output))
+            .chain(read)
+            .collect()
     }
 }
 

@@ -60,6 +60,16 @@ fn short_machine(sample_hz: u32) -> String {
     machine.replace("sample_hz = 10_000", &format!("sample_hz = {sample_hz}"))
 }
 
+/// The document of a command that succeeded; it fits its schema.
+#[track_caller]
+fn document_of(output: &Output) -> serde_json::Value {
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    let document = json(&output.stdout);
+    assert_fits_schema("bitstream", &document);
+    document
+}
+
 /// Requires exit status 2, and these words on standard error.
 #[track_caller]
 fn refused(output: &Output, folder: &Path, words: &[&str]) {
@@ -79,10 +89,7 @@ fn cli_the_bits_of_two_shapers_compute_the_model_and_single_faults_are_found() {
     let (scratch, machine) = scratch(TWO_AXES);
     let folder = scratch.path().join("out");
     let output = bitstream(&machine, "icebreaker", &folder, &["--json", "--clocks", "1000000"]);
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(0), "{said}");
-    let document = json(&output.stdout);
-    assert_fits_schema("bitstream", &document);
+    let document = document_of(&output);
     let checks = document["checks"].as_array().unwrap();
     assert_eq!(checks.len(), 5);
     assert!(checks.iter().all(|check| check["ok"] == true), "{checks:#?}");
@@ -250,13 +257,7 @@ fn long_cli_the_bits_of_shapers_on_ecp5_compute_the_model() {
     for board in ["colorlight-i5", "ulx3s-12f", "ulx3s-85f"] {
         let folder = scratch.path().join(board);
         let output = bitstream(&machine, board, &folder, &["--json"]);
-        assert_eq!(
-            output.status.code(),
-            Some(0),
-            "{}",
-            String::from_utf8_lossy(&output.stderr)
-        );
-        let document = json(&output.stdout);
+        let document = document_of(&output);
         let number = |pointer: &str| document.pointer(pointer).and_then(serde_json::Value::as_u64).unwrap();
         assert_eq!(number("/cells/differences"), 0);
         assert!(number("/cells/multiplexers") > 100 && number("/cells/memories") > 0);
@@ -280,14 +281,7 @@ fn long_cli_the_bits_of_shapers_on_gowin_compute_the_model() {
         &folder,
         &["--json", "--clocks", "1000000"],
     );
-    assert_eq!(
-        output.status.code(),
-        Some(0),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    let document = json(&output.stdout);
-    assert_fits_schema("bitstream", &document);
+    let document = document_of(&output);
     let number = |pointer: &str| document.pointer(pointer).and_then(serde_json::Value::as_u64).unwrap();
     assert_eq!(
         (number("/cells/differences"), number("/lock_step/clocks")),
@@ -341,14 +335,7 @@ fn long_cli_the_bits_of_a_stage_compute_the_model() {
     let (scratch, machine) = scratch(&format!("{before}[axis.pwm]{rest}\n[link]\nbaud = 1_000_000\n"));
     let folder = scratch.path().join("out");
     let output = bitstream(&machine, "colorlight-i5", &folder, &["--json"]);
-    assert_eq!(
-        output.status.code(),
-        Some(0),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    let document = json(&output.stdout);
-    assert_fits_schema("bitstream", &document);
+    let document = document_of(&output);
     let number = |pointer: &str| document.pointer(pointer).and_then(serde_json::Value::as_u64).unwrap();
     assert_eq!(
         (number("/cells/differences"), number("/lock_step/power_on_clocks")),
@@ -380,10 +367,7 @@ fn long_cli_the_bits_of_a_bare_board_move_an_axis() {
         &folder,
         &["--bare-board", "--json"],
     );
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(0), "{said}");
-    let document = json(&output.stdout);
-    assert_fits_schema("bitstream", &document);
+    let document = document_of(&output);
     let number = |pointer: &str| document.pointer(pointer).and_then(serde_json::Value::as_f64).unwrap();
     // 8 m/s² for 20 ms; a count is a micrometre.
     assert_eq!(number("/lock_step/moves/0/command_counts"), 3200.0);

@@ -237,22 +237,16 @@ impl StageConfig {
                         tick,
                     });
                 }
-                _ => {}
-            }
-            let Some(StageLoop {
-                pwm_period_clocks: period,
-                ..
-            }) = axis.closed_loop()
-            else {
-                continue;
-            };
-            let period = *period;
-            if !(2..=65_536).contains(&period) || !tick.is_multiple_of(period) {
-                return Err(StageError::Period {
-                    axis: axis.name.clone(),
-                    period,
-                    tick,
-                });
+                Follower::Loop(of)
+                    if !(2..=65_536).contains(&of.pwm_period_clocks) || !tick.is_multiple_of(of.pwm_period_clocks) =>
+                {
+                    return Err(StageError::Period {
+                        axis: axis.name.clone(),
+                        period: of.pwm_period_clocks,
+                        tick,
+                    });
+                }
+                Follower::Steps(_) | Follower::Loop(_) => {}
             }
         }
         let schedule = self.timing();

@@ -70,7 +70,7 @@ pub(super) fn supervisor(part: Part) -> Part {
 }
 
 /// Registers that only an axis with a controller has.
-const LACKS_REGISTERS: [&str; 17] = [
+const LACKS_REGISTERS: [&str; 18] = [
     "pwm_period_clocks",
     "direct",
     "setting_address",
@@ -88,9 +88,8 @@ const LACKS_REGISTERS: [&str; 17] = [
     "duty",
     "generator",
     "generator_rate",
+    "generated_count",
 ];
-/// As [`LACKS_REGISTERS`]: read by the encoder generator.
-const LACKS_GENERATED: &str = "generated_count";
 
 /// Fields that only an axis with a controller has.
 const LACKS_FIELDS: [&str; 14] = [
@@ -112,7 +111,7 @@ const LACKS_FIELDS: [&str; 14] = [
 
 /// The registers of an axis with steps, made from those of an axis with a controller.
 pub(super) fn registers(config: &StepGeneratorConfig, mut all: Vec<Register>) -> Vec<Register> {
-    all.retain(|register| !LACKS_REGISTERS.contains(&register.name.as_str()) && register.name != LACKS_GENERATED);
+    all.retain(|register| !LACKS_REGISTERS.contains(&register.name.as_str()));
     for register in &mut all {
         register
             .fields
