@@ -5,6 +5,7 @@
 //! --block NAME    only this block                    --mutants N   per block (60)
 //! --seed S        of the choice of mutants (1)       --clocks C    per run of stimuli (1,000,000)
 //! --write         renews the table in ladder/RESULTS.md, or the rows of the block
+//! --search        searches inputs and proofs for the mutants listed there as unknown again, as --write does: an hour
 //! --wires         each constant and wire of the stage's description instead; --mutants takes so many of them
 //! --inside        the named mutants inside the stage of examples/xy-stage.toml instead, as `verify DIR` looks for them
 //! ```
@@ -24,7 +25,7 @@ use std::time::Instant;
 use posicast_blocks::stage::StageConfig;
 use posicast_ladder::mutation::{
     INSIDE, INSIDE_MARKS, MARKS, MutationOptions, MutationRow, WIRES_MARKS, all, hunt, inside_table, merged, named,
-    run, table, unlisted, wires, wires_table,
+    run_beside, table, unknown_of, unlisted, wires, wires_table,
 };
 use posicast_machine::plan::design_machine;
 use posicast_machine::{hardware, machine_file};
@@ -45,6 +46,7 @@ struct Arguments {
     block: Option<String>,
     options: MutationOptions,
     write: bool,
+    search: bool,
     inside: bool,
     /// The most mutants of the wires, if they are asked for.
     wires: Option<usize>,
@@ -59,6 +61,7 @@ impl Arguments {
             block: None,
             options: MutationOptions::default(),
             write: false,
+            search: false,
             inside: false,
             wires: None,
         };
@@ -75,11 +78,12 @@ impl Arguments {
                 "--seed" => found.options.seed = number(&word, &value()?)?,
                 "--clocks" => found.options.clocks = number(&word, &value()?)?,
                 "--write" => found.write = true,
+                "--search" => found.search = true,
                 "--inside" => found.inside = true,
                 "--wires" => found.wires = Some(usize::MAX),
                 other => {
                     return Err(Error::Option(format!(
-                        "`{other}`: the options are --block, --mutants, --seed, --clocks, --write, --wires and --inside"
+                        "`{other}`: the options are --block, --mutants, --seed, --clocks, --write, --search, --wires and --inside"
                     )));
                 }
             }
@@ -108,6 +112,7 @@ fn mutate() -> Result<bool, Error> {
         block,
         options,
         write,
+        search,
         inside,
         wires: most_wires,
     } = Arguments::read()?;
@@ -123,6 +128,7 @@ fn mutate() -> Result<bool, Error> {
     };
     // The table keeps the rows of all blocks, not only of those that were chosen.
     let everything = all()?;
+    let page = MARKS.read()?;
     let temporary = std::env::temp_dir().join(format!("posicast-mutate-{}", std::process::id()));
     let kept = std::env::var_os("POSICAST_MUTATE_KEEP").map(PathBuf::from);
     let folder = kept.clone().unwrap_or_else(|| temporary.clone());
@@ -139,7 +145,12 @@ fn mutate() -> Result<bool, Error> {
             let subject = &subjects[at];
             let start = Instant::now();
             let name = subject.block().name();
-            let fates = run(subject, &options, &folder.join(format!("{at}_{name}")))?;
+            let listed = if write || search {
+                Vec::new()
+            } else {
+                unknown_of(&page, subject)
+            };
+            let fates = run_beside(subject, &options, &listed, &folder.join(format!("{at}_{name}")))?;
             let row = MutationRow::new(subject, &fates);
             let _one_by_one = written.lock().unwrap_or_else(PoisonError::into_inner);
             eprintln!(

@@ -41,7 +41,7 @@ fn long_mutate_stimuli_that_do_nothing_leave_mutants_alive_and_no_proof_calls_th
     let seen = fates(&subject, 12);
     let folder = tempfile::tempdir().unwrap();
     let mut nothing = |_clocks, _seed| Box::new(|_: &[u64], inputs: &mut [u64]| inputs.fill(0)) as Box<_>;
-    let unseen = run_with(&subject, &options(12), folder.path(), &mut nothing).unwrap();
+    let unseen = run_with(&subject, &options(12), &[], folder.path(), &mut nothing).unwrap();
     let mut lost = 0;
     for ((mutant, fate), (same, idle)) in seen.iter().zip(&unseen) {
         assert_eq!(mutant, same);

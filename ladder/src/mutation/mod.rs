@@ -36,7 +36,7 @@ pub use self::inside::{Found, INSIDE, INSIDE_MARKS, hunt, inside_table};
 pub use self::mutant::Mutant;
 pub use self::simulation::{Kill, StimuliOf};
 pub use self::subject::{Subject, all, named};
-pub use self::table::{MARKS, MutationRow, merged, table, unlisted};
+pub use self::table::{MARKS, MutationRow, merged, table, unknown_of, unlisted};
 pub use self::wires::{WIRES_MARKS, WireFate, WireKind, WireMutant, hunt_wires, wires, wires_table, with_wires};
 
 use std::path::Path;
@@ -89,6 +89,8 @@ pub enum Fate {
         /// found no such input.
         differs: Option<u32>,
     },
+    /// Not detected by lock step, and among the mutants listed as unknown; it was not searched again. Its line in the list.
+    Listed(String),
 }
 
 /// Puts mutants into a block and determines the result of each. All files are in `folder`, which must be empty or
@@ -98,8 +100,22 @@ pub enum Fate {
 /// [`Error::ToolMissing`] without Yosys, its ABC or Verilator; [`Error::ToolFailed`] where one of them refuses the block;
 /// [`Error::Unlike`] where the netlist without a mutant does not match the model; [`Error::File`] for the folder.
 pub fn run(subject: &Subject, options: &MutationOptions, folder: &Path) -> Result<Vec<(Mutant, Fate)>, Error> {
+    run_beside(subject, options, &[], folder)
+}
+
+/// Does the same, but takes a mutant that is among `listed` ([`unknown_of`]) as unknown without a search: the searches
+/// in vain take most of the time.
+///
+/// # Errors
+/// Those of [`run`].
+pub fn run_beside(
+    subject: &Subject,
+    options: &MutationOptions,
+    listed: &[String],
+    folder: &Path,
+) -> Result<Vec<(Mutant, Fate)>, Error> {
     let block = subject.block();
-    run_with(subject, options, folder, &mut |clocks, seed| {
+    run_with(subject, options, listed, folder, &mut |clocks, seed| {
         block.stimuli(clocks, seed)
     })
 }
@@ -111,6 +127,7 @@ pub fn run(subject: &Subject, options: &MutationOptions, folder: &Path) -> Resul
 pub fn run_with<'a>(
     subject: &'a Subject,
     options: &MutationOptions,
+    listed: &[String],
     folder: &Path,
     stimuli: StimuliOf<'a, '_>,
 ) -> Result<Vec<(Mutant, Fate)>, Error> {
@@ -121,9 +138,10 @@ pub fn run_with<'a>(
     let verilog = netlist.with_all(&mutants)?;
     let kills = simulation::run(block, &verilog, mutants.len(), options, stimuli)?;
     let fate = |(mutant, kill): (Mutant, Option<Kill>)| {
-        let fate = match kill {
-            Some(kill) => Fate::Lockstep(kill),
-            None => survivor(subject, &netlist, &mutant, options)?,
+        let fate = match (kill, mutant.line_among(listed)) {
+            (Some(kill), _) => Fate::Lockstep(kill),
+            (None, Some(line)) => Fate::Listed(line.to_owned()),
+            (None, None) => survivor(subject, &netlist, &mutant, options)?,
         };
         Ok((mutant, fate))
     };

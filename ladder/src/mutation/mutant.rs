@@ -53,6 +53,14 @@ impl Mutant {
         Self { number, ..self }
     }
 
+    /// Its line among those of unknown mutants, which may end with the clock that a search found.
+    pub(super) fn line_among<'a>(&self, lines: &'a [String]) -> Option<&'a str> {
+        let own = self.to_string();
+        let is_own =
+            |line: &&String| matches!(line.strip_prefix(&own), Some(rest) if rest.is_empty() || rest.starts_with(';'));
+        lines.iter().find(is_own).map(String::as_str)
+    }
+
     /// Whether registers keep their properties. They do not with a fault at their output, with which Yosys loses the
     /// power-up value, or at their clock.
     pub(super) fn keeps_registers(&self) -> bool {
@@ -105,6 +113,11 @@ mod tests {
             "const1 at Y[6] of $procmux$2533 in velocity, borrow[6], velocity.v:42"
         );
         assert!(mutant.keeps_registers());
+        let found = format!("{mutant}; a search tells it from the block after 3 clocks");
+        assert_eq!(
+            mutant.line_among(&[format!("{mutant}4"), found.clone()]),
+            Some(found.as_str())
+        );
         let register = Mutant::parse(&line.replace("-port Y", "-port Q")).unwrap();
         assert!(!register.keeps_registers());
         assert_eq!(Mutant::parse("mutate -ctrl mutsel 16 0 -mode none"), None);

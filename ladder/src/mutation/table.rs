@@ -60,6 +60,7 @@ impl MutationRow {
                     "{mutant}; a search tells it from the block after {clock} clocks"
                 )),
                 Fate::Unknown { differs: None } => row.unknown.push(mutant.to_string()),
+                Fate::Listed(line) => row.unknown.push(line.clone()),
             }
         }
         row
@@ -156,6 +157,12 @@ pub fn unlisted(text: &str, rows: &[MutationRow]) -> Vec<String> {
     unknown
         .filter(|line| !text.lines().any(|listed| listed == line))
         .collect()
+}
+
+/// The unknown mutants of a subject that a table in the format of [`table`] lists.
+pub fn unknown_of(text: &str, subject: &Subject) -> Vec<String> {
+    let row = on_page(text).into_iter().find(|row| row.is_of(subject));
+    row.map(|row| row.unknown).unwrap_or_default()
 }
 
 /// The rows of a table in the format of [`table`].
