@@ -226,3 +226,14 @@ fn steps_that_no_stage_gives_are_an_error() {
         error.reason
     );
 }
+
+/// The trace takes its rows from the tick of the steps: there is no controller whose result it could wait for.
+#[test]
+fn an_axis_with_steps_can_have_a_trace() {
+    let text = TEXT.replacen("[axis.steps]", "[axis.trace]\nsamples = 256\n\n[axis.steps]", 1);
+    let machine = machine_file::parse("steps.toml", &text).unwrap();
+    let stage = hardware::stage(&machine, &design_machine(&machine).unwrap());
+    let component = Component::stage(&stage.unwrap().unwrap().config).unwrap();
+    let model = component.model(1);
+    assert!(model.net("x_trace_rows").is_some() && model.net("y_trace_rows").is_none());
+}

@@ -218,7 +218,6 @@ const EXCITATION: Nets = &[
 ];
 
 const TRACE: Nets = &[
-    ("strobe", "controller_valid"),
     ("select_0", "trace_select_0"),
     ("select_1", "trace_select_1"),
     ("select_2", "trace_select_2"),
@@ -533,7 +532,7 @@ fn trace(axis: &StageAxis, part: Part) -> Part {
         }
     });
     let part = match axis.follower {
-        Follower::Loop(_) => part,
+        Follower::Loop(_) => part.on("strobe", "controller_valid"),
         Follower::Steps(_) => part.on("strobe", "control"),
     };
     (TRACED.len()..SIGNALS).fold(part, |part, place| part.tied(&format!("signal_{place}"), 0))
