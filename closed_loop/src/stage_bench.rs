@@ -16,8 +16,11 @@
 //! [`StageBench::displace`] disturbs it. Forbidden states of the pins are checked in every clock:
 //! [`StageBench::watched`].
 
+mod line_changes;
 mod watch;
 
+pub use line_changes::LineChange;
+use line_changes::LineRecord;
 pub use watch::Watched;
 
 use posicast_blocks::component::Component;
@@ -91,6 +94,13 @@ struct Places {
     drive: [Option<usize>; 6],
     recorded: [usize; 3],
     error: Option<usize>,
+}
+
+impl Places {
+    /// A power stage has four gates, a drive with step inputs two lines.
+    fn has_step_lines(&self) -> bool {
+        self.drive[1].is_none()
+    }
 }
 
 /// Faults between an axis of the machine and the stage.
@@ -188,6 +198,7 @@ pub struct StageBench {
     read_data: usize,
     now: u64,
     samples: Option<Vec<Vec<AxisSample>>>,
+    lines: Vec<LineRecord>,
     faults: Vec<Fault>,
     shown: Vec<DrivePins>,
     watched: Vec<Watched>,
@@ -282,6 +293,7 @@ impl StageBench {
             output_names,
             now: 0,
             samples: None,
+            lines: Vec::new(),
         };
         // An axis with steps has fewer lines, and a stage of such axes no `pll_locked`.
         let lines = bench
@@ -428,11 +440,19 @@ impl StageBench {
     /// Starts recording all axes at each tick.
     pub fn record(&mut self) {
         self.samples = Some(vec![Vec::new(); self.axes.len()]);
+        self.lines = vec![LineRecord::default(); self.axes.len()];
     }
 
     /// Returns the recorded samples, one list per axis, and ends the recording.
     pub fn recorded(&mut self) -> Vec<Vec<AxisSample>> {
         self.samples.take().unwrap_or_default()
+    }
+
+    /// Returns each axis's step lines in the tick with most steps since the recording began, and ends that recording; axes without
+    /// steps have no changes.
+    pub fn recorded_lines(&mut self) -> Vec<Vec<LineChange>> {
+        let lines = std::mem::take(&mut self.lines);
+        lines.into_iter().map(LineRecord::busiest).collect()
     }
 
     /// Simulates this many clocks.
@@ -473,6 +493,7 @@ impl StageBench {
             };
             if self.outputs[self.tick] != 0 {
                 self.sample();
+                self.lines.iter_mut().for_each(|record| record.tick(self.now));
             }
             for (axis, (plant, places)) in self.plants.iter_mut().zip(&self.places).enumerate() {
                 let [a_high, a_low, b_high, b_low, drive_enable, brake_release] = places
@@ -486,6 +507,9 @@ impl StageBench {
                     drive_enable,
                     brake_release,
                 };
+                if let Some(record) = self.lines.get_mut(axis).filter(|_| places.has_step_lines()) {
+                    record.pass(self.now, [a_high, b_high]);
+                }
                 self.shown[axis] = pins;
                 let brake_release = brake_release && !self.faults[axis].jammed;
                 let seen = DrivePins { brake_release, ..pins };

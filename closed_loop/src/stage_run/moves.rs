@@ -8,7 +8,7 @@ use posicast_machine::plan::TableFamily;
 use super::figures::{self, AxisFigures};
 use super::host::{Host, Trouble};
 use super::{Shaping, StageRun, StageRunError};
-use crate::stage_bench::AxisSample;
+use crate::stage_bench::{AxisSample, LineChange};
 
 /// Largest number of clocks in which model and RTL are compared: a minute of Verilator.
 const COMPARED_CLOCKS: u64 = 24_000_000;
@@ -29,6 +29,8 @@ pub struct Moved {
     pub axes: Vec<AxisFigures>,
     /// Samples of each axis at every tick from the start on: of motion, then of standstill.
     pub samples: Vec<Vec<AxisSample>>,
+    /// Each axis's step lines in the tick with most steps; empty on axes without steps.
+    pub lines: Vec<Vec<LineChange>>,
     /// Number of handovers between tap tables, for axes whose modes move with their position.
     pub handovers: u64,
     /// Of each axis with steps, those that its motor lost, and those that came while its drive was off; 0 on other axes.
@@ -165,6 +167,7 @@ pub(super) fn measure(run: &StageRun<'_>, mut host: Host<'_>, shaping: Shaping) 
         axes: axes
             .map(|(samples, axis)| figures::of_move(samples, axis.loop_counts_per_unit()))
             .collect(),
+        lines: host.bench.recorded_lines(),
         handovers: host.handovers,
         lost_steps: (0..run.machine.axes.len())
             .map(|axis| host.bench.plant(axis))

@@ -4,6 +4,7 @@
 mod contours;
 mod pictures;
 mod report;
+mod step_lines;
 mod verdicts;
 
 use crate::bench::{self, Simulator};

@@ -23,6 +23,10 @@ impl ClosedLoop<'_> {
                 axes().map(|axis| self.vibration(axis)).collect(),
             ),
         ];
+        let steps = self.step_panels();
+        if !steps.is_empty() {
+            pictures.push(("plots/stage-steps.svg", steps));
+        }
         let compensated: Vec<_> = self.compensated().map(|(axis, _)| self.at_rest(axis)).collect();
         if !compensated.is_empty() {
             pictures.push(("plots/stage-error-table.svg", compensated));

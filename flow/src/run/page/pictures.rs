@@ -119,6 +119,10 @@ impl RunReport<'_> {
                     "Closed loop: after the move",
                     "What is left of the vibration, also on machines that are 10 % slower and faster than the machine file says.",
                 ),
+                "plots/stage-steps.svg" => (
+                    "Steps",
+                    "What the drive gets: the rate of the steps over the move, and both lines in the tick that has most steps.",
+                ),
                 "plots/stage-circle.svg" => (
                     "Circle",
                     "How far the load is outside of a circle of two axes: with each shaper's own delay, and with delays made equal.",
