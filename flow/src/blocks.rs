@@ -52,7 +52,7 @@ pub(crate) fn others(
         axes: machine.axes.len().clamp(1, MOST_AXES),
         settings: first.map_or_else(Default::default, |control| control.derived.settings),
         components,
-        stage: None,
+        stages: Vec::new(),
         inline: None,
     };
     benches(&sizes).map_err(bench::failure)

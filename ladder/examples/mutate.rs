@@ -6,7 +6,8 @@
 //! --seed S        of the choice of mutants (1)       --clocks C    per run of stimuli (1,000,000)
 //! --write         renews the table in ladder/RESULTS.md, or the rows of the block
 //! --search        searches inputs and proofs for the mutants listed there as unknown again, as --write does: an hour
-//! --wires         each constant and wire of the stage's description instead; --mutants takes so many of them
+//! --wires         each constant and wire of the description of two stages instead, those of examples/xy-stage.toml and
+//!                 examples/printer.toml; --mutants takes so many of each
 //! --inside        the named mutants inside the stage of examples/xy-stage.toml instead, as `verify DIR` looks for them
 //! ```
 //!
@@ -24,8 +25,8 @@ use std::time::Instant;
 
 use posicast_blocks::stage::StageConfig;
 use posicast_ladder::mutation::{
-    INSIDE, INSIDE_MARKS, MARKS, MutationOptions, MutationRow, WIRES_MARKS, all, hunt, inside_table, merged, named,
-    run_beside, table, unknown_of, unlisted, wires, wires_table,
+    INSIDE, INSIDE_MARKS, MARKS, MutationOptions, MutationRow, STEPS_WIRES_MARKS, WIRES_MARKS, all, hunt, inside_table,
+    merged, named, run_beside, table, unknown_of, unlisted, wires, wires_table,
 };
 use posicast_machine::plan::design_machine;
 use posicast_machine::{hardware, machine_file};
@@ -52,8 +53,27 @@ struct Arguments {
     wires: Option<usize>,
 }
 
+/// An example machine whose stage gets mutants.
+struct Example {
+    file: &'static str,
+    text: &'static str,
+    /// The top of its stage.
+    top: &'static str,
+}
+
 /// The machine whose stage gets the named mutants.
-const MACHINE: &str = include_str!("../../examples/xy-stage.toml");
+const XY_STAGE: Example = Example {
+    file: "xy-stage.toml",
+    text: include_str!("../../examples/xy-stage.toml"),
+    top: "xy_stage_stage",
+};
+
+/// The machine whose axes have steps.
+const PRINTER: Example = Example {
+    file: "printer.toml",
+    text: include_str!("../../examples/printer.toml"),
+    top: "printer_stage",
+};
 
 impl Arguments {
     fn read() -> Result<Self, Error> {
@@ -196,46 +216,53 @@ fn mutate() -> Result<bool, Error> {
     Ok(unlisted.is_empty())
 }
 
-/// The stage of the example machine.
-fn example_stage() -> Result<StageConfig, Error> {
-    let refused = |error: &dyn std::fmt::Display| Error::Option(format!("examples/xy-stage.toml: {error}"));
-    let machine = machine_file::parse("xy-stage.toml", MACHINE).map_err(|error| refused(&error))?;
-    let design = design_machine(&machine).map_err(|error| refused(&error))?;
-    let stage = hardware::stage(&machine, &design).map_err(|error| refused(&error))?;
-    Ok(stage.ok_or_else(|| refused(&"it has no stage"))?.config)
+impl Example {
+    /// Its stage.
+    fn stage(&self) -> Result<StageConfig, Error> {
+        let refused = |error: &dyn std::fmt::Display| Error::Option(format!("examples/{}: {error}", self.file));
+        let machine = machine_file::parse(self.file, self.text).map_err(|error| refused(&error))?;
+        let design = design_machine(&machine).map_err(|error| refused(&error))?;
+        let stage = hardware::stage(&machine, &design).map_err(|error| refused(&error))?;
+        Ok(stage.ok_or_else(|| refused(&"it has no stage"))?.config)
+    }
 }
 
-/// Tries the constants and wires of the stage of the example machine; true if the page lists each that was not found.
+/// Tries the constants and wires of the stages of two machines; true if the page lists each that was not found.
 fn mutate_wires(most: usize, options: &MutationOptions, write: bool) -> Result<bool, Error> {
-    let folder = std::env::temp_dir().join(format!("posicast-mutate-{}", std::process::id()));
-    let found = wires(&example_stage()?, "xy_stage_stage", most, options, &folder);
-    // A file that cannot be deleted stays in the temporary folder; that is no reason to fail.
-    let _ = std::fs::remove_dir_all(&folder);
-    let (all, fates) = found?;
-    let table = wires_table(all, &fates, options.clocks);
-    if write {
-        WIRES_MARKS.renew(|_| table.clone())?;
+    let mut is_listed = true;
+    for (name, example, marks) in [
+        ("stage", XY_STAGE, WIRES_MARKS),
+        ("stage with steps", PRINTER, STEPS_WIRES_MARKS),
+    ] {
+        let folder = std::env::temp_dir().join(format!("posicast-mutate-{}", std::process::id()));
+        let found = wires(&example.stage()?, example.top, most, options, &folder);
+        // A file that cannot be deleted stays in the temporary folder; that is no reason to fail.
+        let _ = std::fs::remove_dir_all(&folder);
+        let (all, fates) = found?;
+        let table = wires_table(name, all, &fates, options.clocks);
+        if write {
+            marks.renew(|_| table.clone())?;
+        }
+        println!("{table}");
+        let page = marks.read()?;
+        let unseen = fates.iter().filter(|fate| fate.kill.is_none());
+        for mutant in unseen.map(|fate| fate.mutant.describe()) {
+            if !page.contains(&mutant) {
+                eprintln!("{name}: not found, and not listed in ladder/RESULTS.md: {mutant}");
+                is_listed = false;
+            }
+        }
     }
-    print!("{table}");
-    let page = WIRES_MARKS.read()?;
-    let unseen = fates.iter().filter(|fate| fate.kill.is_none());
-    let unlisted: Vec<String> = unseen
-        .map(|fate| fate.mutant.describe())
-        .filter(|mutant| !page.contains(mutant))
-        .collect();
-    for mutant in &unlisted {
-        eprintln!("not found, and not listed in ladder/RESULTS.md: {mutant}");
-    }
-    Ok(unlisted.is_empty())
+    Ok(is_listed)
 }
 
 /// Tries the named mutants, each in the stage of the example machine.
 fn mutate_inside(options: &MutationOptions, write: bool) -> Result<bool, Error> {
-    let stage = example_stage()?;
+    let stage = XY_STAGE.stage()?;
     let mut fates = Vec::new();
     for mutant in INSIDE {
         let start = Instant::now();
-        let found = hunt(&mutant, &stage, "xy_stage_stage", options.clocks, options.seed)?;
+        let found = hunt(&mutant, &stage, XY_STAGE.top, options.clocks, options.seed)?;
         let by = found
             .as_ref()
             .map_or("NOT FOUND".to_owned(), |found| format!("{found:?}"));

@@ -1,6 +1,7 @@
 //! The pins of a stage in the first clocks: off at power-up without a reset, during a reset, and after it until a host switches on.
 
 use posicast_blocks::Direction;
+use posicast_blocks::stage::{Follower, StageConfig};
 use posicast_hdl::emit::Module;
 use posicast_testbench::blocks::{Block, Sources, library_sizes};
 use posicast_testbench::crosssim::without_initial_values;
@@ -12,9 +13,25 @@ const CLOCKS: [u64; 3] = [200, 3, 400];
 /// Pins that switch something on, after the axis's name.
 const SWITCHES: [&str; 6] = ["a_high", "a_low", "b_high", "b_low", "drive_enable", "brake_release"];
 
-/// Returns the first clock in which a pin is not low, and the pin, from power-up on in a simulator with `x`. The lines change at random,
+/// The outputs that must be off, each with its level when it is: the pins that switch something on, the lines of the steps, and the
+/// interrupt.
+fn switches(config: &StageConfig) -> Vec<(String, u64)> {
+    let mut found = vec![("irq".to_owned(), 0)];
+    for axis in &config.axes {
+        let named = |pin: &str| format!("{}_{pin}", axis.name);
+        found.extend(SWITCHES.iter().map(|pin| (named(pin), 0)));
+        if let Follower::Steps(steps) = &axis.follower {
+            let low = steps.lines_active_low();
+            let [a, b] = steps.mode().line_names();
+            found.extend([(named(a), low.a.into()), (named(b), low.b.into())]);
+        }
+    }
+    found
+}
+
+/// Returns the first clock in which a pin is not off, and the pin, from power-up on in a simulator with `x`. The lines change at random,
 /// and the host does not write.
-fn first_on(block: &StageBlock, modules: &[Module]) -> Option<(u64, String)> {
+fn first_on(block: &StageBlock, switches: &[(String, u64)], modules: &[Module]) -> Option<(u64, String)> {
     let mut device = Sources::of_modules(modules).unwrap().icarus(block).unwrap();
     let model = block.model(0);
     let ports = |direction| model.ports().iter().filter(move |port| port.direction == direction);
@@ -28,12 +45,10 @@ fn first_on(block: &StageBlock, modules: &[Module]) -> Option<(u64, String)> {
         .filter(|(_, port)| port.name != "rst" && !port.name.starts_with("avs_"))
         .map(|(at, _)| at)
         .collect();
-    let watched: Vec<(usize, String)> = ports(Direction::Output)
+    let watched: Vec<(usize, &(String, u64))> = ports(Direction::Output)
         .enumerate()
-        .filter(|(_, port)| port.name == "irq" || SWITCHES.iter().any(|pin| port.name.ends_with(&format!("_{pin}"))))
-        .map(|(at, port)| (at, port.name.clone()))
+        .filter_map(|(at, port)| Some((at, switches.iter().find(|(name, _)| *name == port.name)?)))
         .collect();
-    assert_eq!(watched.len(), 13);
     let mut random = 0x9e37_79b9_7f4a_7c15_u64;
     for clock in 0..CLOCKS.iter().sum() {
         for pin in &pins {
@@ -47,8 +62,9 @@ fn first_on(block: &StageBlock, modules: &[Module]) -> Option<(u64, String)> {
         }
         inputs[0] = (CLOCKS[0]..CLOCKS[0] + CLOCKS[1]).contains(&clock).into();
         Device::step(&mut device, &inputs, &mut shown, &mut unknown).unwrap();
-        let on = watched.iter().find(|(at, _)| shown[*at] != 0 || unknown[*at] != 0);
-        if let Some((_, pin)) = on {
+        let mut watched = watched.iter();
+        let on = watched.find(|(at, (_, off))| shown[*at] != *off || unknown[*at] != 0);
+        if let Some((_, (pin, _))) = on {
             return Some((clock, pin.clone()));
         }
     }
@@ -57,10 +73,17 @@ fn first_on(block: &StageBlock, modules: &[Module]) -> Option<(u64, String)> {
 
 #[test]
 fn every_pin_is_off_from_power_up_on() {
-    let block = StageBlock::new(&library_sizes().unwrap().stage.unwrap(), "stage").unwrap();
-    let modules = block.modules().unwrap();
-    assert_eq!(first_on(&block, &modules), None);
-    // Without the values at power-up, the pins are unknown until the reset.
-    let unset: Vec<Module> = modules.iter().map(without_initial_values).collect();
-    assert_eq!(first_on(&block, &unset).map(|(clock, _)| clock), Some(0));
+    // Four pins of the bridge, drive and brake of two axes; drive, brake and two lines of three axes with steps.
+    for (config, count) in library_sizes().unwrap().stages.iter().zip([13, 13]) {
+        let block = StageBlock::new(config, "stage").unwrap();
+        let modules = block.modules().unwrap();
+        let outputs: Vec<String> = block.model(0).ports().iter().map(|port| port.name.clone()).collect();
+        let mut switches = switches(config);
+        switches.retain(|(name, _)| outputs.contains(name));
+        assert_eq!(switches.len(), count, "{switches:?}");
+        assert_eq!(first_on(&block, &switches, &modules), None);
+        // Without the values at power-up, the pins are unknown until the reset.
+        let unset: Vec<Module> = modules.iter().map(without_initial_values).collect();
+        assert_eq!(first_on(&block, &switches, &unset).map(|(clock, _)| clock), Some(0));
+    }
 }

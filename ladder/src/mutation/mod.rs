@@ -37,7 +37,9 @@ pub use self::mutant::Mutant;
 pub use self::simulation::{Kill, StimuliOf};
 pub use self::subject::{Subject, all, named};
 pub use self::table::{MARKS, MutationRow, merged, table, unknown_of, unlisted};
-pub use self::wires::{WIRES_MARKS, WireFate, WireKind, WireMutant, hunt_wires, wires, wires_table, with_wires};
+pub use self::wires::{
+    STEPS_WIRES_MARKS, WIRES_MARKS, WireFate, WireKind, WireMutant, hunt_wires, wires, wires_table, with_wires,
+};
 
 use std::path::Path;
 use std::time::Duration;

@@ -33,10 +33,16 @@ use posicast_testbench::Error;
 use posicast_testbench::blocks::Block;
 use posicast_testbench::stage::{ShortTicksBlock, StageBlock};
 
-/// Marks of the table of these mutants.
+/// Marks of the table of these mutants of the XY stage.
 pub const WIRES_MARKS: Marks = Marks {
     begin: "<!-- wires of the stage: written by the example `mutate` -->",
     end: "<!-- end of wires of the stage -->",
+};
+
+/// Marks of the table of these mutants of the printer's stage.
+pub const STEPS_WIRES_MARKS: Marks = Marks {
+    begin: "<!-- wires of a stage with steps: written by the example `mutate` -->",
+    end: "<!-- end of wires of a stage with steps -->",
 };
 
 /// Kind of connection that a mutant changes.
@@ -391,8 +397,8 @@ fn differences(
     Ok(counts)
 }
 
-/// The score by kind, and what was not found with its reason.
-pub fn wires_table(all: usize, fates: &[WireFate], clocks: u64) -> String {
+/// The score by kind, and what was not found with its reason; `stage` names it in the table.
+pub fn wires_table(stage: &str, all: usize, fates: &[WireFate], clocks: u64) -> String {
     let mut text = format!(
         "{} of {all} mutants of the description, {clocks} clocks with short ticks.\n\n| block | kind | mutants | found | not found |\n|---|---|---|---|---|\n",
         fates.len()
@@ -403,7 +409,7 @@ pub fn wires_table(all: usize, fates: &[WireFate], clocks: u64) -> String {
         // Writing to a `String` cannot fail.
         let _ = writeln!(
             text,
-            "| stage | {} | {} | {found} | {} |",
+            "| {stage} | {} | {} | {found} | {} |",
             kind.name(),
             of_kind().count(),
             of_kind().count() - found
@@ -445,7 +451,10 @@ mod tests {
     /// Every input of every block of both axes is in the list, and every mutant is in the text.
     #[test]
     fn the_list_has_every_constant_and_wire_of_the_description() {
-        let config = posicast_testbench::blocks::library_sizes().unwrap().stage.unwrap();
+        let config = posicast_testbench::blocks::library_sizes()
+            .unwrap()
+            .stages
+            .swap_remove(0);
         let block = StageBlock::new(&config, "stage").unwrap();
         let mutants = list(&block, 1);
         for axis in ["x", "y"] {

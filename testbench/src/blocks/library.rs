@@ -1,8 +1,8 @@
 //! Every hardware block at one size, for the rungs of the verification ladder that take each block once.
 //!
 //! The rows are those of `posicast verify` for a machine of two complete axes: the shapers in their top, each block
-//! alone, the blocks that connect others, each component through its bus, its register bank alone, and a stage. Sizes
-//! are those of the example stage where they matter for coverage; the whole stage has short ticks, so that a run
+//! alone, the blocks that connect others, each component through its bus, its register bank alone, and two stages. Sizes
+//! are those of the example stage where they matter for coverage; the whole stages have short ticks, so that a run
 //! contains many.
 //!
 //! The kinds of blocks are those of the registry; a test of the command line checks that it contains every name of
@@ -12,10 +12,12 @@ use posicast_blocks::component::Component;
 use posicast_blocks::divider::DividerConfig;
 use posicast_blocks::linear_scale::ScaleRatio;
 use posicast_blocks::pwm::{ActiveLow, BridgeMode, PwmConfig};
+use posicast_blocks::segments::POSITION_FRACTION;
 use posicast_blocks::shaper::ShaperConfig;
 use posicast_blocks::sliding_mode::{Law, Settings};
 use posicast_blocks::stage::Supervision;
 use posicast_blocks::stage::{Follower, StageAxis, StageConfig, StageErrorTable, StageLoop, StageScale};
+use posicast_blocks::step_generator::{StepGeneratorConfig, StepLinesActiveLow, StepMode, StepTimes};
 use posicast_blocks::trace::TraceConfig;
 use posicast_hdl::machine::AxisShaper;
 
@@ -100,7 +102,7 @@ pub fn library_sizes() -> Result<BenchSizes, Error> {
         axes: 2,
         settings: Settings::default(),
         components: components.into_iter().collect::<Result<_, _>>()?,
-        stage: Some(stage()?),
+        stages: vec![stage()?, stage_with_steps()?],
         inline: Some(crate::inline_shaper::example()?),
     })
 }
@@ -159,6 +161,55 @@ pub(crate) fn stage() -> Result<StageConfig, Error> {
     let periods = stage.timing().duty_clocks() / STAGE_PERIOD_CLOCKS + 1;
     stage.tick = DividerConfig::new(u64::from(periods * STAGE_PERIOD_CLOCKS)).map_err(refused)?;
     Ok(stage)
+}
+
+/// Three axes with steps, one for each mode of the lines: with trace memory, with a linear scale that watches the steps, and with
+/// lines that are active low.
+pub(crate) fn stage_with_steps() -> Result<StageConfig, Error> {
+    let times = StepTimes {
+        pulse_clocks: 5,
+        space_clocks: 6,
+        direction_setup_clocks: 7,
+        direction_hold_clocks: 4,
+    };
+    let axis = |name: &str, mode: StepMode, tick_clocks: u64| -> Result<StageAxis, Error> {
+        let steps = StepGeneratorConfig::new(tick_clocks, POSITION_FRACTION, mode, times, 24).map_err(refused)?;
+        Ok(StageAxis {
+            name: name.to_owned(),
+            shaper: shaper([2, 3, 5, 6])?.for_motion(MOTION).map_err(refused)?,
+            modulo: false,
+            follower: Follower::Steps(steps),
+            supervision: SUPERVISION,
+            scale: None,
+            error_table: None,
+            bring_up: None,
+        })
+    };
+    let with_ticks = |tick_clocks: u64| -> Result<StageConfig, Error> {
+        let x = StageAxis {
+            bring_up: Some(TraceConfig::new(256).map_err(refused)?),
+            ..axis("x", StepMode::StepDirection, tick_clocks)?
+        };
+        let y = StageAxis {
+            scale: Some(StageScale {
+                ratio: ScaleRatio::new(1000.0, 2000.0).map_err(refused)?,
+                closes_loop: false,
+                invert: false,
+            }),
+            ..axis("y", StepMode::UpDown, tick_clocks)?
+        };
+        let mut z = axis("z", StepMode::Quadrature, tick_clocks)?;
+        if let Follower::Steps(steps) = &mut z.follower {
+            *steps = steps.active_low(StepLinesActiveLow { a: true, b: false });
+        }
+        Ok(StageConfig {
+            tick: DividerConfig::new(tick_clocks).map_err(refused)?,
+            axes: vec![x, y, z],
+            machine_crc: None,
+        })
+    };
+    let schedule = with_ticks(TICK_CLOCKS)?.timing().duty_clocks();
+    with_ticks(u64::from(schedule) + 1)
 }
 
 /// Short delays, so that brake, limits and monitors act within a short run.

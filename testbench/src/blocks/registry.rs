@@ -79,8 +79,8 @@ pub struct BenchSizes {
     pub settings: Settings,
     /// The components.
     pub components: Vec<ComponentBlock>,
-    /// The stage, if it is compared too.
-    pub stage: Option<StageConfig>,
+    /// The stages that are compared too.
+    pub stages: Vec<StageConfig>,
     /// The inline shaper, if there is one.
     pub inline: Option<InlineShaper>,
 }

@@ -21,7 +21,7 @@ use posicast_machine::{hardware, machine_file};
 
 use crate::Error;
 use crate::blocks::reached::InsideAStage;
-use crate::blocks::registry::{AreaRow, RegistryRow, one};
+use crate::blocks::registry::{AreaRow, RegistryRow};
 use crate::blocks::{Bins, Block, Reach, inside, not_in_rusthdl};
 use crate::formal::refused;
 use crate::lockstep::Clock;
@@ -30,9 +30,11 @@ use crate::stimuli::Stimuli;
 /// The block's row in the registry.
 pub(crate) const ROW: RegistryRow = RegistryRow {
     name: "stage",
-    benches: |sizes| match &sizes.stage {
-        None => Ok(Vec::new()),
-        Some(config) => Ok(one(StageBlock::new(config, "stage").map_err(refused)?)),
+    benches: |sizes| {
+        let bench = |config| -> Result<Box<dyn Block>, Error> {
+            Ok(Box::new(StageBlock::new(config, "stage").map_err(refused)?))
+        };
+        sizes.stages.iter().map(bench).collect()
     },
     proofs: proofs::tasks,
     areas: || {

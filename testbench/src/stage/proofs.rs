@@ -1,14 +1,15 @@
-//! Proofs of supervisor, drive command and PWM as a stage wires them.
+//! Proofs of supervisor, drive command and PWM, and of supervisor and step generator, as a stage wires them.
 
 use posicast_blocks::component::Component;
-use posicast_blocks::stage::StageAxis;
+use posicast_blocks::stage::{Follower, StageAxis, StageConfig};
 use posicast_hdl::component;
 use posicast_hdl::emit::Module;
 
 use crate::Error;
 use crate::axis;
-use crate::blocks::library::stage;
+use crate::blocks::library::{stage, stage_with_steps};
 use crate::formal::{INDUCTION, Task, refused};
+use crate::step_generator;
 
 /// Blocks of an axis that only give commanded and actual position. They are left out, so that their outputs have any
 /// value.
@@ -23,14 +24,29 @@ const LEFT_OUT: [&str; 9] = [
     "excitation",
     "trace",
 ];
+/// Those of an axis with steps.
+const LEFT_OUT_BESIDE_STEPS: [&str; 6] = [
+    "segments",
+    "motion_shaper",
+    "pulse_counter",
+    "linear_scale",
+    "excitation",
+    "trace",
+];
 
-/// The axes of the stage that the other rungs of verification use: one with the blocks for bring-up, one with a linear
-/// scale.
+/// The axes of the stages that the other rungs of verification use. Two have controllers: one with the blocks for bring-up, one with a
+/// linear scale. Three have steps, one for each mode of the lines.
 pub(crate) fn tasks() -> Result<Vec<Task>, Error> {
-    let stage = stage()?;
-    let component = Component::stage(&stage).map_err(refused)?;
+    let mut tasks = of_stage(&stage()?, &LEFT_OUT)?;
+    tasks.extend(of_stage(&stage_with_steps()?, &LEFT_OUT_BESIDE_STEPS)?);
+    Ok(tasks)
+}
+
+/// The axes of a stage, without these blocks.
+fn of_stage(stage: &StageConfig, left_out: &[&str]) -> Result<Vec<Task>, Error> {
+    let component = Component::stage(stage).map_err(refused)?;
     let mut modules = component::emit(&component, "stage", "stage")?;
-    for block in LEFT_OUT {
+    for block in left_out {
         let of_block = modules.iter_mut().filter(|module| module.is(block));
         if of_block.map(empty).count() == 0 {
             return Err(refused(format!("the stage has no block `{block}`")));
@@ -48,9 +64,18 @@ fn task(axis: &StageAxis, modules: &[Module]) -> Result<Task, Error> {
     let filter = [("FILTER_CLOCKS", format!("7'd{filter_clocks}"))];
     let size = format!("axis {}, lines filtered for {filter_clocks} clocks", axis.name);
     let block = (modules[..=at].to_vec(), modules[at].ports.clone());
-    Ok(Task::new("stage_axis", &size, INDUCTION, block)
-        .macros(&axis::proofs::macros())
-        .properties(&filter, include_str!("stage_axis.sv")))
+    let task = |name, size: &str| Task::new(name, size, INDUCTION, block).macros(&axis::proofs::macros());
+    Ok(match &axis.follower {
+        Follower::Loop(_) => task("stage_axis", &size).properties(&filter, include_str!("stage_axis.sv")),
+        Follower::Steps(steps) => {
+            let [a, b] = steps.mode().line_names();
+            let lines = [("LINE_A", a.to_owned()), ("LINE_B", b.to_owned())];
+            let size = format!("{size}, {}", steps.mode().name().replace('_', " "));
+            task("stage_steps", &size)
+                .macros(&step_generator::proofs::lines(steps))
+                .properties(&[&filter[..], &lines].concat(), include_str!("stage_steps.sv"))
+        }
+    })
 }
 
 /// Removes everything but the ports of a module: its outputs are free in every clock. Without a wire Yosys would take

@@ -2,7 +2,7 @@
 //!
 //! A wire between two blocks of a stage changes once per tick. At 5,000 clocks per tick a million clocks are 200 ticks,
 //! which are too few for everything that a stage does. So the same files run a second time with other *constants*:
-//! clocks per tick, period of the PWM, and the waiting times of the supervisor. Nothing else is changed:
+//! clocks per tick, period of the PWM, times of step lines, and the waiting times of the supervisor. Nothing else is changed:
 //!
 //! ```text
 //! emitted with the machine's constants ─┐ line by line
@@ -16,7 +16,8 @@ use std::collections::HashMap;
 
 use posicast_blocks::ClockedBlock;
 use posicast_blocks::divider::DividerConfig;
-use posicast_blocks::stage::{StageConfig, StageError, StageLoop};
+use posicast_blocks::stage::{Follower, StageAxis, StageConfig, StageError, StageLoop};
+use posicast_blocks::step_generator::{StepGeneratorConfig, StepTimes};
 use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module};
 
@@ -125,10 +126,8 @@ pub(crate) fn shortened(config: &StageConfig) -> Option<StageConfig> {
     let mut short = config.clone();
     let times =
         |of: &StageLoop| u32::from(of.pwm.dead_time_floor_clocks()) + u32::from(of.pwm.minimum_pulse_floor_clocks());
-    // A step generator is built for one length of tick.
-    let loops = config.axes.iter().map(|axis| axis.closed_loop().map(times));
-    let longest = loops.collect::<Option<Vec<_>>>()?.into_iter().max()?;
-    let least = (PERIOD_TO_TIMES * longest).max(LEAST_PERIOD_CLOCKS);
+    let loops = config.axes.iter().filter_map(StageAxis::closed_loop);
+    let least = (PERIOD_TO_TIMES * loops.map(times).max().unwrap_or(0)).max(LEAST_PERIOD_CLOCKS);
     // The tick has as many periods as fit into the schedule, and is not longer than that.
     let schedule = config.timing().duty_clocks() + 1;
     let periods = (schedule / least).max(1);
@@ -138,8 +137,9 @@ pub(crate) fn shortened(config: &StageConfig) -> Option<StageConfig> {
         return None;
     }
     for axis in &mut short.axes {
-        if let Some(of) = axis.closed_loop_mut() {
-            of.pwm_period_clocks = period;
+        match &mut axis.follower {
+            Follower::Loop(of) => of.pwm_period_clocks = period,
+            Follower::Steps(steps) => *steps = shortened_steps(steps, short.tick.tick_clocks())?,
         }
         let watched = &mut axis.supervision;
         for ticks in [
@@ -154,6 +154,28 @@ pub(crate) fn shortened(config: &StageConfig) -> Option<StageConfig> {
         watched.direct_limit = watched.direct_limit.min(period as u16 / 2);
     }
     Some(short)
+}
+
+/// Returns the step generator for ticks of this many clocks. The times of its lines shrink in proportion, so that a tick has as many
+/// steps at the largest rate.
+fn shortened_steps(steps: &StepGeneratorConfig, tick_clocks: u32) -> Option<StepGeneratorConfig> {
+    let shrunk = |clocks: u64| (clocks * u64::from(tick_clocks) / u64::from(steps.tick_clocks())).max(1);
+    let times = steps.times();
+    let times = StepTimes {
+        pulse_clocks: shrunk(times.pulse_clocks),
+        space_clocks: shrunk(times.space_clocks),
+        direction_setup_clocks: shrunk(times.direction_setup_clocks),
+        direction_hold_clocks: shrunk(times.direction_hold_clocks),
+    };
+    let limit = u64::from(steps.owed_limit());
+    let short = StepGeneratorConfig::new(
+        u64::from(tick_clocks),
+        steps.fraction_bits(),
+        steps.mode(),
+        times,
+        limit,
+    );
+    Some(short.ok()?.active_low(steps.lines_active_low()))
 }
 
 impl Block for ShortTicksBlock {

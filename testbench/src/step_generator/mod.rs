@@ -1,6 +1,6 @@
 //! The bench of `step_generator`.
 
-mod proofs;
+pub(crate) mod proofs;
 mod reached;
 pub(crate) mod stimuli;
 mod trials;

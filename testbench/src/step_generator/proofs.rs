@@ -40,20 +40,31 @@ pub(super) fn all() -> Result<Vec<Task>, Error> {
     ])
 }
 
-fn proof(config: StepGeneratorConfig, exact: bool, size: &str) -> Result<Task, Error> {
-    let times = config.times();
+fn bit(level: bool) -> String {
+    format!("1'b{}", u8::from(level))
+}
+
+/// Macros for what the lines show.
+pub(crate) fn lines(config: &StepGeneratorConfig) -> Vec<(String, String)> {
     let low = config.lines_active_low();
-    let bit = |level: bool| format!("1'b{}", u8::from(level));
-    let clocks = |clocks: u64| format!("17'd{clocks}");
     let mode = match config.mode() {
         StepMode::StepDirection => 0,
         StepMode::UpDown => 1,
         StepMode::Quadrature => 2,
     };
-    let macros = [
+    [
         ("MODE", format!("2'd{mode}")),
         ("A_OFF", bit(low.a)),
         ("B_OFF", bit(low.b)),
+    ]
+    .map(|(name, value)| (name.to_owned(), value))
+    .into()
+}
+
+fn proof(config: StepGeneratorConfig, exact: bool, size: &str) -> Result<Task, Error> {
+    let times = config.times();
+    let clocks = |clocks: u64| format!("17'd{clocks}");
+    let macros = [
         ("PULSE", clocks(times.pulse_clocks)),
         ("SPACE", clocks(times.space_clocks)),
         ("SETUP", clocks(times.direction_setup_clocks)),
@@ -75,5 +86,7 @@ fn proof(config: StepGeneratorConfig, exact: bool, size: &str) -> Result<Task, E
         ("EXACT", bit(exact)),
     ];
     let block = (emit(&config, "")?, ports());
-    Ok(Task::new("step_generator", size, INDUCTION, block).properties(&macros, include_str!("step_generator.sv")))
+    Ok(Task::new("step_generator", size, INDUCTION, block)
+        .macros(&lines(&config))
+        .properties(&macros, include_str!("step_generator.sv")))
 }
