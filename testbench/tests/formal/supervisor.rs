@@ -114,6 +114,18 @@ fn formal_an_emergency_stop_of_another_axis_on_no_wire_is_found() {
 }
 
 #[test]
+fn formal_steps_without_the_supervisors_enable_are_found() {
+    let wired = ".enable        (steps_enable)";
+    fails("stage_steps", wired, ".enable        (1'd1)", "steps");
+}
+
+#[test]
+fn formal_a_trip_of_the_steps_on_no_wire_is_found() {
+    let wired = ".pwm_tripped            (steps_tripped)";
+    fails("stage_steps", wired, ".pwm_tripped            (1'd0)", "trip_is_off");
+}
+
+#[test]
 fn formal_an_axis_that_starts_alone_is_found() {
     fails(
         "group",
