@@ -32,6 +32,8 @@ pub struct CellsReport {
     pub multiplexers: u64,
     /// Memories compared, with their contents.
     pub memories: u64,
+    /// Distributed RAMs of ECP5 compared, 16 words of four bits each; their tables are among the look-up tables.
+    pub distributed_rams: u64,
     /// Connections compared: inputs of cells, and output pins.
     pub connections: u64,
     /// Logic cells through which the router only passes a net.

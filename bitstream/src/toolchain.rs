@@ -39,6 +39,9 @@ pub trait Toolchain: Send + Sync {
     /// The error of a program that does not start.
     fn versions(&self, folder: &Path) -> Result<[String; 2], BitstreamError>;
 
+    /// The versions with which posicast is tested, in the form of [`versions`](Self::versions).
+    fn tested_versions(&self) -> [&'static str; 2];
+
     /// What Yosys and nextpnr are told, but for the files: equal for equal results of equal programs.
     fn recipe(&self, top: &str) -> String;
 

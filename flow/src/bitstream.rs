@@ -2,6 +2,7 @@
 //! with the router's result and with the bit-exact model.
 
 mod bare;
+mod checks;
 mod document;
 mod evidence;
 mod machine;

@@ -1,19 +1,14 @@
 //! The netlist of the bits: every cell on which an output pin depends, from what its tile's bits set and connect.
 
-use super::database::{Database, Pad};
+use super::distributed_ram::{self, WriteEnable};
 use super::memory;
+use super::pads;
 use super::routing::{CellPort, OutputPort, Routing, Source, slice_letter};
+use super::slice::{Enable, FlopSettings, ResetLine, SliceSettings, carry_before, table_input};
 use crate::BitstreamError;
 use crate::boards::{PinUse, TopPin};
-use crate::network::{Gate, HIGH, LOW, NetIndex, Network, NetworkMemory, State};
+use crate::network::{Gate, HIGH, LOW, NetIndex, Network, NetworkMemory, OutputNets, State, TableWrite};
 use std::collections::{BTreeMap, HashMap, HashSet};
-
-/// The values of an exclusive or of two inputs.
-const EXCLUSIVE_OR: u16 = 0b0110;
-/// The values of a choice: the second input while the first is low, the third while it is high.
-const CHOICE: u16 = 0b1110_0100;
-/// A table without settings.
-const OPEN_TABLE: u16 = u16::MAX;
 
 /// The netlist of the bits.
 #[derive(Debug)]
@@ -44,72 +39,23 @@ pub fn decode(routing: &Routing<'_>, pins: &[TopPin]) -> Result<DecodedBits, Bit
             }
         }
     }
-    while let Some(output) = decoder.waiting.pop() {
+    while let Some(output) = decoder.outputs.next() {
         decoder.cell(output)?;
     }
     decoder.check_driven()?;
-    pads(routing, database, pins)?;
+    pads::check(routing, database, pins)?;
     Ok(DecodedBits {
         network: decoder.network,
-        outputs: decoder.nets.into_iter().collect(),
+        outputs: decoder.outputs.into_sorted(),
     })
-}
-
-impl Pad {
-    /// What the pad drives inside the device.
-    #[must_use]
-    pub fn output(self) -> CellPort {
-        CellPort {
-            row: self.row,
-            column: self.column,
-            port: OutputPort::Pad(self.letter),
-        }
-    }
-}
-
-/// The beginning of the setting of a pad in this direction.
-fn base_type(direction: PinUse) -> &'static str {
-    match direction {
-        PinUse::Input => "INPUT_",
-        PinUse::Output => "OUTPUT_",
-    }
-}
-
-/// Checks that the pads in use are those of the board's pins, each in its direction.
-fn pads(routing: &Routing<'_>, database: &Database, pins: &[TopPin]) -> Result<(), BitstreamError> {
-    let expected = pins.iter().map(|pin| Ok((database.pad(pin.pin)?, pin.direction)));
-    let expected = expected.collect::<Result<Vec<_>, BitstreamError>>()?;
-    for (row, column) in routing.places() {
-        for (name, value) in routing.settings(row, column) {
-            let letter = name
-                .strip_prefix("PIO")
-                .and_then(|name| name.strip_suffix(".BASE_TYPE"));
-            let (Some(letter), true) = (letter, value != "NONE") else {
-                continue;
-            };
-            // The settings of a pad lie in its tile, or in the one beside or below it.
-            let is_here = |(pad, direction): &(Pad, PinUse)| {
-                let near = pad.row.abs_diff(row) <= 2 && pad.column.abs_diff(column) <= 1;
-                near && letter.starts_with(pad.letter) && value.starts_with(base_type(*direction))
-            };
-            if !expected.iter().any(is_here) {
-                return Err(BitstreamError::UnknownCell(format!(
-                    "a pad that the top does not use, PIO{letter} at R{row}C{column}: {value}"
-                )));
-            }
-        }
-    }
-    Ok(())
 }
 
 pub(super) struct Decoder<'a> {
     pub(super) routing: &'a Routing<'a>,
     pub(super) network: Network,
-    nets: HashMap<CellPort, NetIndex>,
+    outputs: OutputNets<CellPort>,
     /// Tables of carry chains, before the carry.
     functions: HashMap<(u8, u8, u8), NetIndex>,
-    /// Outputs whose cells are still to be decoded.
-    waiting: Vec<CellPort>,
     memories: HashSet<(u8, u8)>,
 }
 
@@ -118,22 +64,15 @@ impl<'a> Decoder<'a> {
         Self {
             routing,
             network: Network::of_constants(),
-            nets: HashMap::new(),
+            outputs: OutputNets::new(),
             functions: HashMap::new(),
-            waiting: Vec::new(),
             memories: HashSet::new(),
         }
     }
 
     /// The net of an output, whose cell is decoded later.
     pub(super) fn net(&mut self, output: CellPort) -> NetIndex {
-        if let Some(net) = self.nets.get(&output) {
-            return *net;
-        }
-        let net = self.network.new_net(output.identifier());
-        self.nets.insert(output, net);
-        self.waiting.push(output);
-        net
+        self.outputs.net(&mut self.network, output, CellPort::identifier)
     }
 
     /// The net that drives a wire of a tile.
@@ -161,9 +100,8 @@ impl<'a> Decoder<'a> {
 
     /// Checks that something drives every output that is in use.
     fn check_driven(&self) -> Result<(), BitstreamError> {
-        let driven = self.network.driven();
-        match self.nets.iter().find(|(_, net)| !driven.contains(net)) {
-            Some((output, _)) => Err(unknown(*output, "an output of a port that also writes")),
+        match self.outputs.undriven(&self.network) {
+            Some(output) => Err(unknown(output, "an output of a port that also writes")),
             None => Ok(()),
         }
     }
@@ -187,31 +125,28 @@ impl<'a> Decoder<'a> {
                     true => 0,
                     false => settings.table()? & 0xF,
                 };
-                let values = (0..16u16).fold(0, |values, index| {
-                    let generates = generated >> (index >> 2) & 1;
-                    let value = if index & 1 == 1 { index >> 1 & 1 } else { generates };
-                    values | value << index
-                });
-                self.network
-                    .gates
-                    .push(Gate::new(net, &[function, carry, a?, b?], values));
+                let gate = Gate::carry(net, (function, carry), [a?, b?], generated);
+                self.network.gates.push(gate);
             }
             OutputPort::TwoTables(slice) => {
                 let select = self.selector(row, column, slice, 0)?;
                 let low = self.source(row, column, &format!("F{}_SLICE", 2 * slice))?;
                 let high = self.source(row, column, &format!("F{}_SLICE", 2 * slice + 1))?;
-                self.network.gates.push(Gate::new(net, &[select, low, high], CHOICE));
+                self.network.gates.push(Gate::choice(net, select, [low, high]));
             }
             OutputPort::TwoSlices(slice) => {
                 let letter = slice_letter(slice);
                 let select = self.selector(row, column, slice, 1)?;
                 let low = self.source(row, column, &format!("FXA{letter}_SLICE"))?;
                 let high = self.source(row, column, &format!("FXB{letter}_SLICE"))?;
-                self.network.gates.push(Gate::new(net, &[select, low, high], CHOICE));
+                self.network.gates.push(Gate::choice(net, select, [low, high]));
             }
             OutputPort::Flop(flop) => self.flop(output, flop, net)?,
             OutputPort::WriteAddress(_) | OutputPort::WriteData(_) => {
-                return Err(unknown(output, "a small RAM"));
+                let input = distributed_ram::write_port_input(port);
+                let (pin, table) = input.ok_or_else(|| unknown(output, "another bit of a write port"))?;
+                let source = self.table_input(row, column, table, pin)?;
+                self.network.gates.push(Gate::wire(net, source));
             }
             OutputPort::MemoryA(_) | OutputPort::MemoryB(_) => {
                 if self.memories.insert((row, column)) {
@@ -238,13 +173,48 @@ impl<'a> Decoder<'a> {
                     Gate::wire(net, function)
                 } else {
                     let carry = self.carry_into(row, column, table);
-                    Gate::new(net, &[function, carry], EXCLUSIVE_OR)
+                    Gate::sum(net, function, carry)
                 };
                 self.network.gates.push(gate);
             }
-            "DPRAM" => return Err(unknown(output, "a small RAM")),
+            "DPRAM" => self.distributed_ram(output, table, net)?,
             other => return Err(unknown(output, &format!("a slice in mode {other}"))),
         }
+        Ok(())
+    }
+
+    /// A bit of a distributed RAM, which is the table that reads it.
+    fn distributed_ram(&mut self, output: CellPort, table: u8, net: NetIndex) -> Result<(), BitstreamError> {
+        let CellPort { row, column, .. } = output;
+        let wires = distributed_ram::write_wires(table);
+        let enable = match distributed_ram::write_enable(self.routing, output)? {
+            WriteEnable::Never => LOW,
+            WriteEnable::Always => HIGH,
+            WriteEnable::Line { is_inverted } => {
+                let line = self.source(row, column, &wires.enable)?;
+                if is_inverted { self.inverse(line) } else { line }
+            }
+        };
+        let mut address = [LOW; 4];
+        for (bit, wire) in address.iter_mut().zip(&wires.address) {
+            *bit = self.source(row, column, wire)?;
+        }
+        let write = TableWrite {
+            output: net,
+            clock: self.source(row, column, &wires.clock)?,
+            enable,
+            address,
+            data: self.source(row, column, &wires.data)?,
+        };
+        self.network.table_writes.push(write);
+        let inputs = self.table_inputs(row, column, table)?;
+        let table = SliceSettings::new(self.routing, row, column, table).table()?;
+        // Every entry can be written, whatever the inputs select now.
+        self.network.gates.push(Gate {
+            output: net,
+            inputs,
+            table,
+        });
         Ok(())
     }
 
@@ -352,182 +322,6 @@ impl CellPort {
     }
 }
 
-/// What drives an input of a table.
-pub(super) fn table_input(
-    routing: &Routing<'_>,
-    (row, column): (u8, u8),
-    table: u8,
-    pin: &str,
-) -> Result<Source, BitstreamError> {
-    let key = format!("SLICE{}.{pin}{}MUX", slice_letter(table / 2), table % 2);
-    match routing.setting(row, column, &key) {
-        Some("1") => Ok(Source::Constant(true)),
-        _ => routing.source(row, column, &format!("{pin}{table}_SLICE")),
-    }
-}
-
-/// The table whose carry goes into a table; `None` where the chain begins.
-pub(super) fn carry_before(routing: &Routing<'_>, row: u8, column: u8, table: u8) -> Option<CellPort> {
-    let (row, column, before) = match table.checked_sub(1) {
-        Some(before) => (row, column, before),
-        None => {
-            let (row, column) = routing.carry_from(row, column)?;
-            (row, column, 7)
-        }
-    };
-    routing.is_carry_chain(row, column, before / 2).then_some(CellPort {
-        row,
-        column,
-        port: OutputPort::Carry(before),
-    })
-}
-
-/// The settings of a table's half of a slice.
-pub(super) struct SliceSettings<'a> {
-    routing: &'a Routing<'a>,
-    row: u8,
-    column: u8,
-    table: u8,
-}
-
-impl<'a> SliceSettings<'a> {
-    pub(super) fn new(routing: &'a Routing<'a>, row: u8, column: u8, table: u8) -> Self {
-        Self {
-            routing,
-            row,
-            column,
-            table,
-        }
-    }
-
-    fn of_slice(&self, key: &str) -> Option<&'a str> {
-        let key = format!("SLICE{}.{key}", slice_letter(self.table / 2));
-        self.routing.setting(self.row, self.column, &key)
-    }
-
-    pub(super) fn mode(&self) -> &'a str {
-        self.of_slice("MODE").unwrap_or("LOGIC")
-    }
-
-    /// The values of the table: bit `i` for inputs A, B, C and D whose levels are the bits of `i`.
-    pub(super) fn table(&self) -> Result<u16, BitstreamError> {
-        let key = format!("K{}.INIT", self.table % 2);
-        match self.of_slice(&key) {
-            None => Ok(OPEN_TABLE),
-            Some(digits) => u16::from_str_radix(digits, 2).map_err(|_| self.unknown(&format!("{key} {digits}"))),
-        }
-    }
-
-    /// Whether the table passes the carry on without adding it, and makes none.
-    pub(super) fn is_carry_alone(&self) -> Result<bool, BitstreamError> {
-        let key = format!("CCU2.INJECT1_{}", self.table % 2);
-        match self.of_slice(&key) {
-            None | Some("YES") => Ok(true),
-            Some("NO") => Ok(false),
-            Some(other) => Err(self.unknown(&format!("{key} {other}"))),
-        }
-    }
-
-    fn unknown(&self, what: &str) -> BitstreamError {
-        let output = CellPort {
-            row: self.row,
-            column: self.column,
-            port: OutputPort::Table(self.table),
-        };
-        unknown(output, what)
-    }
-}
-
-/// How a flip-flop is enabled.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Enable {
-    Always,
-    Never,
-    Line { is_inverted: bool },
-}
-
-/// The reset of a flip-flop.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct ResetLine {
-    /// 0 or 1 of the tile's two.
-    pub(super) line: u8,
-    pub(super) is_inverted: bool,
-    pub(super) is_asynchronous: bool,
-}
-
-/// The settings of a flip-flop.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct FlopSettings {
-    /// Whether it takes its data from the table beside it, not from its own wire.
-    pub(super) is_from_table: bool,
-    /// Its clock: 0 or 1 of the tile's two.
-    pub(super) clock: Option<u8>,
-    pub(super) enable: Enable,
-    pub(super) reset: Option<ResetLine>,
-    /// Its value after a reset, and after configuration.
-    pub(super) reset_to: bool,
-}
-
-impl FlopSettings {
-    pub(super) fn new(routing: &Routing<'_>, row: u8, column: u8, flop: u8) -> Result<Self, BitstreamError> {
-        let output = CellPort {
-            row,
-            column,
-            port: OutputPort::Flop(flop),
-        };
-        let (slice, half) = (flop / 2, flop % 2);
-        let letter = slice_letter(slice);
-        let setting = |key: String| routing.setting(row, column, &key);
-        let one_of = |key: String, default: &'static str, known: [&'static str; 2]| {
-            let value = setting(key.clone()).unwrap_or(default);
-            let index = known.iter().position(|name| *name == value);
-            index
-                .ok_or_else(|| unknown(output, &format!("{key} {value}")))
-                .map(|index| index == 1)
-        };
-        // The tile's clock or reset that a slice takes.
-        let line = |wire: String| {
-            let name = routing.driver_name(row, column, &wire)?;
-            name.as_bytes().last().map(|digit| digit - b'0')
-        };
-        let register = |key: &str| format!("SLICE{letter}.REG{half}.{key}");
-        if one_of(register("LSRMODE"), "LSR", ["LSR", "PRLD"])? {
-            return Err(unknown(output, "a flip-flop that loads at its reset"));
-        }
-        let clock = line(format!("MUXCLK{slice}"));
-        if let Some(clock) = clock
-            && one_of(format!("CLK{clock}.CLKMUX"), "CLK", ["CLK", "INV"])?
-        {
-            return Err(unknown(output, "a flip-flop at the falling edge"));
-        }
-        let reset = match line(format!("MUXLSR{slice}")) {
-            None => None,
-            Some(reset) => {
-                let mode = format!("LSR{reset}.SRMODE");
-                Some(ResetLine {
-                    line: reset,
-                    is_inverted: one_of(format!("LSR{reset}.LSRMUX"), "LSR", ["LSR", "INV"])?,
-                    is_asynchronous: one_of(mode, "LSR_OVER_CE", ["LSR_OVER_CE", "ASYNC"])?,
-                })
-            }
-        };
-        let enable = match setting(format!("SLICE{letter}.CEMUX")).unwrap_or("CE") {
-            "CE" => Enable::Line { is_inverted: false },
-            "INV" => Enable::Line { is_inverted: true },
-            "1" => Enable::Always,
-            "0" => Enable::Never,
-            other => return Err(unknown(output, &format!("CEMUX {other}"))),
-        };
-        Ok(Self {
-            is_from_table: one_of(register("SD"), "1", ["0", "1"])?,
-            clock,
-            enable,
-            reset,
-            reset_to: one_of(register("REGSET"), "SET", ["RESET", "SET"])?,
-        })
-    }
-}
-
-fn unknown(output: CellPort, what: &str) -> BitstreamError {
+pub(super) fn unknown(output: CellPort, what: &str) -> BitstreamError {
     BitstreamError::UnknownCell(format!("{output}: {what}"))
 }

@@ -3,8 +3,9 @@
 use super::config::{self, Config};
 use super::database::Database;
 use super::decode::{DecodedBits, decode};
+use super::routed::output_of_net;
 use super::routing::Routing;
-use super::structure::{compare_cells, output_of_net};
+use super::structure::compare_cells;
 use crate::BitstreamError;
 use crate::boards::{FpgaBoard, TopPin};
 use crate::error::at;
@@ -103,7 +104,8 @@ impl Ecp5Tools {
     }
 }
 
-/// What Yosys is told. Small RAMs and multipliers are made of logic: their bits are not read back.
+/// What Yosys is told. Multipliers are made of logic: their bits are not read back. Small RAMs are block RAMs, which no machine is short of:
+/// distributed RAM would take more logic. A memory that asks for it by an attribute becomes it nevertheless.
 fn script(top: &str) -> String {
     format!("synth_ecp5 -abc9 -nodsp -nolutram -top {top} -json top.json")
 }
@@ -136,6 +138,10 @@ impl Toolchain for Ecp5Tools {
         ])
     }
 
+    fn tested_versions(&self) -> [&'static str; 2] {
+        ["Yosys 0.23", "nextpnr-ecp5 0.11.1"]
+    }
+
     fn recipe(&self, top: &str) -> String {
         format!("{} {:?}", script(top), self.nextpnr_arguments())
     }
@@ -148,8 +154,8 @@ impl Toolchain for Ecp5Tools {
             .run("synthesising the top", &arguments, folder, BUILD_LIMIT)?;
         let types = cell_types(&self.yosys, top, folder)?;
         let count = |name: &str| types.iter().filter(|of| *of == name).count() as u64;
-        // A carry takes the place of two tables.
-        let tables = count("LUT4") + 2 * count("CCU2C");
+        // A carry takes the place of two tables, a distributed RAM that of six.
+        let tables = count("LUT4") + 2 * count("CCU2C") + 6 * count("TRELLIS_DPR16X4");
         Ok(Synthesised {
             logic_cells: tables.max(count("TRELLIS_FF")),
             memories: count("DP16KD"),

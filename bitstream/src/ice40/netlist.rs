@@ -161,6 +161,7 @@ impl IceboxNetlist {
             outputs: self.outputs.clone(),
             gates,
             states,
+            table_writes: Vec::new(),
             memories: self.memories.iter().cloned().map(NetworkMemory::Ice40).collect(),
         }
     }

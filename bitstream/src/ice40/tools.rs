@@ -81,6 +81,10 @@ impl Toolchain for Ice40Tools {
         ])
     }
 
+    fn tested_versions(&self) -> [&'static str; 2] {
+        ["Yosys 0.23", "nextpnr-ice40 0.4"]
+    }
+
     fn recipe(&self, top: &str) -> String {
         format!("{} {:?}", self.script(top), self.nextpnr_arguments())
     }

@@ -1,10 +1,13 @@
-//! The netlist of the bits in the form that is simulated: gates of at most four inputs, registers, and memories.
+//! The netlist of the bits in the form that is simulated: gates of at most four inputs, registers, and memories, of which the smallest are
+//! gates whose table is written.
 
 mod block_ram;
+mod outputs;
 mod simulate;
 mod verilog;
 
 pub use block_ram::{BlockRam, RamPort, RamWrite};
+pub(crate) use outputs::OutputNets;
 pub use simulate::NetlistSimulation;
 
 use std::collections::HashSet;
@@ -27,8 +30,10 @@ pub struct Network {
     pub inputs: Vec<(String, NetIndex)>,
     /// Pins that are outputs, with their nets.
     pub outputs: Vec<(String, NetIndex)>,
-    /// Cells without state.
+    /// Cells without state, and those whose table is a memory.
     pub gates: Vec<Gate>,
+    /// What writes into tables of gates.
+    pub table_writes: Vec<TableWrite>,
     /// Registers.
     pub states: Vec<State>,
     /// Memories.
@@ -113,6 +118,21 @@ pub struct Gate {
     pub table: u16,
 }
 
+/// A port that writes into the table of a gate at the rising edge of its clock: a bit of a distributed RAM, which the gate reads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TableWrite {
+    /// Output of the gate.
+    pub output: NetIndex,
+    /// Its clock.
+    pub clock: NetIndex,
+    /// Nothing is written while this is low.
+    pub enable: NetIndex,
+    /// The entry: the level of each net stands for that of the gate's input.
+    pub address: [NetIndex; 4],
+    /// The entry's new value.
+    pub data: NetIndex,
+}
+
 /// A register at the rising edge of its clock.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct State {
@@ -158,6 +178,35 @@ impl Gate {
         Self { output, inputs, table }
     }
 
+    /// A choice: `low` while `select` is low, else `high`.
+    #[must_use]
+    pub fn choice(output: NetIndex, select: NetIndex, [low, high]: [NetIndex; 2]) -> Self {
+        Self::new(output, &[select, low, high], 0b1110_0100)
+    }
+
+    /// The sum of a stage of a carry chain: the exclusive or of its function and the carry into it.
+    #[must_use]
+    pub fn sum(output: NetIndex, function: NetIndex, carry: NetIndex) -> Self {
+        Self::new(output, &[function, carry], 0b0110)
+    }
+
+    /// The carry out of a stage of a carry chain: the carry into it while its function is high, else the entry of the table `generated` that
+    /// the two inputs select.
+    #[must_use]
+    pub fn carry(
+        output: NetIndex,
+        (function, carry): (NetIndex, NetIndex),
+        inputs: [NetIndex; 2],
+        generated: u16,
+    ) -> Self {
+        let table = (0..16u16).fold(0, |values, index| {
+            let generates = generated >> (index >> 2) & 1;
+            let value = if index & 1 == 1 { index >> 1 & 1 } else { generates };
+            values | value << index
+        });
+        Self::new(output, &[function, carry, inputs[0], inputs[1]], table)
+    }
+
     /// A gate whose output is its input.
     #[must_use]
     pub fn wire(output: NetIndex, input: NetIndex) -> Self {
@@ -168,6 +217,31 @@ impl Gate {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_chain_of_two_stages_adds_two_bits() {
+        let value = |gate: Gate, levels: &dyn Fn(NetIndex) -> u16| {
+            let entry = gate.inputs.iter().rev().fold(0, |entry, net| entry << 1 | levels(*net));
+            gate.table >> entry & 1
+        };
+        // The function is the exclusive or of a and b, and where that is low, a is the carry.
+        let [function, carry, a, b, out] = [2, 3, 4, 5, 6];
+        for case in 0..8u16 {
+            let [of_a, of_b, of_carry] = [0, 1, 2].map(|bit| case >> bit & 1);
+            let levels = |net: NetIndex| match net {
+                2 => of_a ^ of_b,
+                3 => of_carry,
+                4 => of_a,
+                5 => of_b,
+                _ => 0,
+            };
+            let sum = value(Gate::sum(out, function, carry), &levels);
+            let over = value(Gate::carry(out, (function, carry), [a, b], 0b1010), &levels);
+            assert_eq!(2 * over + sum, of_a + of_b + of_carry, "{case:03b}");
+            let chosen = value(Gate::choice(out, carry, [a, b]), &levels);
+            assert_eq!(chosen, if of_carry == 1 { of_b } else { of_a });
+        }
+    }
 
     #[test]
     fn entries_that_cannot_be_selected_do_not_distinguish_gates() {

@@ -4,7 +4,7 @@
 //! whose inputs stay as they were in the clock before keeps its value: it holds it, takes the same data again, or is reset again.
 
 use super::block_ram::BlockRamState;
-use super::{Gate, HIGH, NetIndex, Network, NetworkMemory, State};
+use super::{Gate, HIGH, NetIndex, Network, NetworkMemory, State, TableWrite};
 use crate::BitstreamError;
 use crate::ice40::MemoryState;
 use std::collections::{HashMap, HashSet};
@@ -25,6 +25,8 @@ pub struct NetlistSimulation {
     /// Nets that change with the clock, and their levels after it; kept between clocks to save an allocation.
     next: Vec<(NetIndex, bool)>,
     memories: Vec<Memory>,
+    /// What writes into tables, each with the index of its gate.
+    table_writes: Vec<(usize, TableWrite)>,
     inputs: HashMap<String, NetIndex>,
     outputs: HashMap<String, NetIndex>,
 }
@@ -76,6 +78,12 @@ impl NetlistSimulation {
                 name(other.output)
             )));
         }
+        if let Some(other) = network.table_writes.iter().find(|write| write.clock != clock) {
+            return Err(BitstreamError::UnknownCell(format!(
+                "another clock of the distributed RAM {}",
+                name(other.output)
+            )));
+        }
         let has_clock = |memory: &NetworkMemory| memory.clocks().iter().all(|net| *net == clock);
         if let Some(other) = network.memories.iter().find(|memory| !has_clock(memory)) {
             return Err(BitstreamError::UnknownCell(format!(
@@ -96,6 +104,12 @@ impl NetlistSimulation {
             levels[state.output as usize] = state.initial;
         }
         let gates = in_order(&network.gates)?;
+        let table_writes = network.table_writes.iter().map(|write| {
+            let gate = gates.iter().position(|gate| gate.output == write.output);
+            let missing = || BitstreamError::UnknownCell(format!("no table at {}", name(write.output)));
+            Ok((gate.ok_or_else(missing)?, *write))
+        });
+        let table_writes = table_writes.collect::<Result<Vec<_>, BitstreamError>>()?;
         let mut readers = vec![Vec::new(); network.names.len()];
         for (index, gate) in gates.iter().enumerate() {
             for net in gate.inputs {
@@ -125,6 +139,7 @@ impl NetlistSimulation {
                 .copied()
                 .collect(),
             memories: network.memories.iter().map(Memory::new).collect(),
+            table_writes,
             inputs,
             outputs: network.outputs.iter().cloned().collect(),
         })
@@ -210,6 +225,15 @@ impl NetlistSimulation {
         }
         for memory in &mut self.memories {
             memory.clock(&level, &mut next);
+        }
+        for (gate, write) in &self.table_writes {
+            if level(write.enable) {
+                let address = write.address.iter().rev();
+                let entry = address.fold(0, |entry, net| entry << 1 | u16::from(level(*net)));
+                let table = &mut self.gates[*gate].table;
+                *table = *table & !(1 << entry) | u16::from(level(write.data)) << entry;
+                self.pending[gate / 64] |= 1 << (gate % 64);
+            }
         }
         for (net, level) in next.drain(..) {
             self.set(net, level);
@@ -305,6 +329,7 @@ mod tests {
             outputs: vec![("3".to_owned(), shown)],
             gates: vec![Gate::wire(shown, output)],
             states: vec![state],
+            table_writes: vec![],
             memories: vec![],
         };
         let mut simulation = NetlistSimulation::new(&network, "1").unwrap();
@@ -319,6 +344,49 @@ mod tests {
             [false, false, true, false, false].map(&mut clock),
             [false, true, false, false, true]
         );
+    }
+
+    /// Nets 3 to 6 address what is read, 7 to 10 what is written.
+    #[test]
+    fn a_table_is_written_at_the_clock_and_read_at_once() {
+        let [clock, output, enable, data] = [2, 11, 12, 13];
+        let network = Network {
+            names: (0..14).map(|net| format!("n{net}")).collect(),
+            inputs: [2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 13]
+                .map(|net: NetIndex| (net.to_string(), net))
+                .to_vec(),
+            outputs: vec![("q".to_owned(), output)],
+            gates: vec![Gate::new(output, &[3, 4, 5, 6], 0b0100)],
+            table_writes: vec![TableWrite {
+                output,
+                clock,
+                enable,
+                address: [7, 8, 9, 10],
+                data,
+            }],
+            ..Network::default()
+        };
+        let mut simulation = NetlistSimulation::new(&network, "2").unwrap();
+        let mut step = |read: usize, written: Option<(usize, bool)>| {
+            for (bit, net) in (3..7).enumerate() {
+                simulation.set(net, read >> bit & 1 == 1);
+            }
+            let (entry, level) = written.unwrap_or((read, true));
+            for (bit, net) in (7..11).enumerate() {
+                simulation.set(net, entry >> bit & 1 == 1);
+            }
+            simulation.set(enable, written.is_some());
+            simulation.set(data, level);
+            simulation.settle();
+            let level = simulation.level(output);
+            simulation.clock();
+            level
+        };
+        assert!(step(2, None) && !step(4, None));
+        // What is read in the clock of a write is the old entry; another entry is not touched.
+        assert!(!step(13, Some((13, true))));
+        assert!(step(13, None) && !step(11, None) && step(2, Some((2, false))));
+        assert!(!step(2, None) && step(13, None));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! A network as Verilog, for any simulator.
 
-use super::{BlockRam, Gate, HIGH, LOW, NetIndex, Network, NetworkMemory, State};
+use super::{BlockRam, Gate, HIGH, LOW, NetIndex, Network, NetworkMemory, State, TableWrite};
+use std::collections::HashMap;
 use std::fmt::Write;
 
 impl Network {
@@ -30,13 +31,13 @@ impl Network {
             let _ = writeln!(text, "    wire {} = pin_{pin};", self.name(*net));
         }
         text.push('\n');
+        let writes: HashMap<NetIndex, &TableWrite> =
+            self.table_writes.iter().map(|write| (write.output, write)).collect();
         for gate in &self.gates {
-            let _ = writeln!(
-                text,
-                "    assign {} = {};",
-                self.name(gate.output),
-                self.expression(gate)
-            );
+            text += &match writes.get(&gate.output) {
+                Some(write) => self.written_table(gate, write),
+                None => format!("    assign {} = {};\n", self.name(gate.output), self.expression(gate)),
+            };
         }
         for memory in &self.memories {
             // The netlist of iCE40 has Verilog of its own.
@@ -60,6 +61,25 @@ impl Network {
             HIGH => "1'b1".to_owned(),
             net => self.names[net as usize].clone(),
         }
+    }
+
+    /// A bit of a distributed RAM.
+    fn written_table(&self, gate: &Gate, write: &TableWrite) -> String {
+        let bus = |nets: &[NetIndex; 4]| {
+            let names = nets.iter().rev().map(|net| self.name(*net));
+            format!("{{{}}}", names.collect::<Vec<_>>().join(", "))
+        };
+        let output = self.name(gate.output);
+        format!(
+            "    reg  [15:0] {output}_table = 16'h{:04x};\n    assign {output} = {output}_table[{}];\n    always @(posedge {}) if ({}) \
+             {output}_table[{}] <= {};\n",
+            gate.table,
+            bus(&gate.inputs),
+            self.name(write.clock),
+            self.name(write.enable),
+            bus(&write.address),
+            self.name(write.data)
+        )
     }
 
     /// The table of a gate as choices by its inputs, the last first.

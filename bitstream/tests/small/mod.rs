@@ -5,14 +5,15 @@
 use posicast_bitstream::boards::FpgaBoard;
 use posicast_bitstream::network::{NetlistSimulation, Network};
 
-/// A shift register at the serial line addresses three memories, of which one has words of 36 bits with other contents in each half; sums
-/// with and without enable, reset and set; wide choices.
+/// A shift register at the serial line addresses four memories, of which one has words of 36 bits with other contents in each half, and one
+/// has 16 words that are read without a clock; sums with and without enable, reset and set; wide choices.
 pub(crate) const DESIGN: &str = "\
 module small (input wire clk, input wire serial_rx, output reg serial_tx, output wire led_n);
     reg [43:0] shift = 44'd0;
     reg [35:0] wide [0:511];
     reg [17:0] word [0:1023];
     reg [8:0] byte [0:2047];
+    reg [7:0] few [0:15];
     reg [35:0] wide_q = 36'd0;
     reg [17:0] word_q = 18'd0;
     reg [8:0] byte_q = 9'd0;
@@ -23,15 +24,18 @@ module small (input wire clk, input wire serial_rx, output reg serial_tx, output
         for (i = 0; i < 512; i = i + 1) wide[i] = {18'd0 + i, 18'h2AAAA};
         for (i = 0; i < 1024; i = i + 1) word[i] = i * 5;
         for (i = 0; i < 2048; i = i + 1) byte[i] = i * 3;
+        for (i = 0; i < 16; i = i + 1) few[i] = i * 29;
         serial_tx = 1'b0;
     end
     wire [63:0] choices = {wide_q, word_q, byte_q, shift[0]};
-    assign led_n = ^{sum[15], down[11], byte_q[8]};
+    wire [7:0] few_q = few[shift[26:23]];
+    assign led_n = ^{sum[15], down[11], byte_q[8], few_q[shift[33:31]]};
     always @(posedge clk) begin
         shift <= {shift[42:0], serial_rx};
         if (shift[43]) wide[shift[8:0]] <= shift[40:5];
         if (shift[42]) word[shift[19:10]] <= shift[37:20];
         if (shift[41]) byte[shift[20:10]] <= shift[30:22];
+        if (!shift[40]) few[shift[15:12]] <= shift[39:32];
         wide_q <= wide[shift[17:9]];
         word_q <= word[shift[9:0]];
         byte_q <= byte[shift[10:0]];
@@ -50,6 +54,7 @@ struct Model {
     wide: Vec<u64>,
     word: Vec<u64>,
     byte: Vec<u64>,
+    few: Vec<u64>,
     read: [u64; 3],
     sum: u64,
     down: u64,
@@ -63,6 +68,7 @@ impl Model {
             wide: (0..512).map(|i| i << 18 | 0x2_AAAA).collect(),
             word: (0..1024).map(|i| (i * 5) & 0x3_FFFF).collect(),
             byte: (0..2048).map(|i| (i * 3) & 0x1FF).collect(),
+            few: (0..16).map(|i| (i * 29) & 0xFF).collect(),
             read: [0; 3],
             sum: 0,
             down: 0xFFF,
@@ -71,7 +77,8 @@ impl Model {
     }
 
     fn led_n(&self) -> bool {
-        (self.sum >> 15 ^ self.down >> 11 ^ self.read[2] >> 8) & 1 == 1
+        let few = self.few[(self.shift >> 23 & 15) as usize] >> (self.shift >> 31 & 7);
+        (self.sum >> 15 ^ self.down >> 11 ^ self.read[2] >> 8 ^ few) & 1 == 1
     }
 
     fn clock(&mut self, serial_rx: bool) {
@@ -94,6 +101,9 @@ impl Model {
         }
         if bit(41) {
             self.byte[bits(20, 10) as usize] = bits(30, 22);
+        }
+        if !bit(40) {
+            self.few[bits(15, 12) as usize] = bits(39, 32);
         }
         if bit(7) && bit(12) {
             self.sum = 0;

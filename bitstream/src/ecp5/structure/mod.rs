@@ -3,19 +3,22 @@
 //! Nets are compared by what drives them. A look-up table is compared as a function of its drivers, because the router may swap a table's
 //! inputs.
 
+mod memories;
+
 use super::database::Pad;
-use super::decode::{DecodedBits, Enable, FlopSettings, ResetLine, SliceSettings, carry_before, table_input};
+use super::decode::DecodedBits;
+use super::distributed_ram;
 use super::memory;
+use super::routed::{RoutedCell, RoutedNetlist};
 use super::routing::{CellPort, OutputPort, Routing, Source, slice_letter};
+use super::slice::{Enable, FlopSettings, ResetLine, SliceSettings, carry_before, table_input};
 use crate::BitstreamError;
 use crate::boards::TopPin;
 use crate::function;
 use crate::report::CellsReport;
 use serde_json::Value;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 
-/// Name of the program that wrote the netlist, for errors.
-const TOOL: &str = "nextpnr-ecp5";
 /// Inputs of a table.
 const TABLE_PINS: [&str; 4] = ["A", "B", "C", "D"];
 
@@ -38,8 +41,11 @@ pub fn compare_cells(
     };
     for cell in &routed.cells {
         match cell.kind {
+            // Where a write port takes the place of two tables, the router puts marks into theirs.
+            "TRELLIS_COMB" if cell.parameter("MODE") == "RAMW_BLOCK" => {}
             "TRELLIS_COMB" => comparison.table(cell)?,
             "TRELLIS_FF" => comparison.flop(cell)?,
+            "TRELLIS_RAMW" => comparison.write_port(cell)?,
             "DP16KD" => comparison.memory(cell)?,
             "TRELLIS_IO" => comparison.pad(cell)?,
             // A clock's gate without an enable is always open.
@@ -52,153 +58,6 @@ pub fn compare_cells(
     comparison.left_over(bits);
     comparison.pins(pins)?;
     Ok(comparison.report)
-}
-
-/// The output of the cell that drives the net of this name in the router's netlist.
-pub fn output_of_net(routed: &Value, name: &str) -> Result<CellPort, BitstreamError> {
-    let net = routed["netnames"][name]["bits"][0].as_u64();
-    let driver = net.and_then(|net| RoutedNetlist::read(routed).ok()?.drivers.get(&net).copied());
-    match driver {
-        Some(RoutedDriver::Output(output)) => Ok(output),
-        _ => Err(unreadable(format!("no cell drives the net {name}"))),
-    }
-}
-
-/// The router's netlist.
-struct RoutedNetlist<'a> {
-    cells: Vec<RoutedCell<'a>>,
-    /// What drives each net.
-    drivers: HashMap<u64, RoutedDriver<'a>>,
-}
-
-/// A cell of the router's netlist.
-#[derive(Clone, Copy)]
-struct RoutedCell<'a> {
-    kind: &'a str,
-    cell: &'a Value,
-    row: u8,
-    column: u8,
-    /// Its name in its tile, such as `SLICEA.K0`.
-    site: &'a str,
-}
-
-#[derive(Clone, Copy)]
-enum RoutedDriver<'a> {
-    Output(CellPort),
-    /// A clock's gate.
-    Gate(RoutedCell<'a>),
-}
-
-impl<'a> RoutedCell<'a> {
-    fn read(cell: &'a Value) -> Option<Self> {
-        let place = cell["attributes"]["NEXTPNR_BEL"].as_str()?;
-        let mut parts = place.split('/');
-        let column = parts.next()?.strip_prefix('X')?.parse().ok()?;
-        let row = parts.next()?.strip_prefix('Y')?.parse().ok()?;
-        Some(Self {
-            kind: cell["type"].as_str()?,
-            cell,
-            row,
-            column,
-            site: parts.next()?,
-        })
-    }
-
-    fn place(&self) -> String {
-        format!("R{}C{} {}", self.row, self.column, self.site)
-    }
-
-    /// Index 0 to 7 of the table or flip-flop in its tile.
-    fn index(&self) -> Result<u8, BitstreamError> {
-        let letter = self.site.strip_prefix("SLICE").and_then(|site| site.bytes().next());
-        let half = self.site.bytes().next_back();
-        match (letter, half) {
-            (Some(letter @ b'A'..=b'D'), Some(half @ b'0'..=b'1')) => Ok(2 * (letter - b'A') + half - b'0'),
-            _ => Err(unreadable(format!("a cell at {}", self.place()))),
-        }
-    }
-
-    /// A parameter as text; empty if there is none.
-    fn parameter(&self, name: &str) -> &'a str {
-        self.cell["parameters"][name].as_str().unwrap_or_default().trim()
-    }
-
-    /// A parameter of binary digits as a number.
-    fn number(&self, name: &str) -> u64 {
-        u64::from_str_radix(self.parameter(name), 2).unwrap_or_default()
-    }
-
-    fn net(&self, port: &str) -> Option<u64> {
-        self.cell["connections"][port][0].as_u64()
-    }
-
-    fn is_open(&self, port: &str) -> bool {
-        self.net(port).is_none()
-    }
-
-    /// The cell's output at a port; `None` if that is an input.
-    fn output(&self, port: &str) -> Option<OutputPort> {
-        let bit = |prefix: &str| port.strip_prefix(prefix).and_then(|bit| bit.parse().ok());
-        match (self.kind, port) {
-            ("TRELLIS_COMB", "F") => self.index().ok().map(OutputPort::Table),
-            ("TRELLIS_COMB", "FCO") => self.index().ok().map(OutputPort::Carry),
-            ("TRELLIS_COMB", "OFX") => self.index().ok().map(|index| match index % 2 {
-                0 => OutputPort::TwoTables(index / 2),
-                _ => OutputPort::TwoSlices(index / 2),
-            }),
-            ("TRELLIS_FF", "Q") => self.index().ok().map(OutputPort::Flop),
-            ("DP16KD", _) => bit("DOA")
-                .map(OutputPort::MemoryA)
-                .or_else(|| bit("DOB").map(OutputPort::MemoryB)),
-            ("TRELLIS_IO", "O") => self.site.chars().last().map(OutputPort::Pad),
-            _ => None,
-        }
-    }
-}
-
-impl<'a> RoutedNetlist<'a> {
-    fn read(module: &'a Value) -> Result<Self, BitstreamError> {
-        let cells = module["cells"].as_object().into_iter().flatten();
-        let cells = cells.map(|(name, cell)| {
-            RoutedCell::read(cell).ok_or_else(|| unreadable(format!("the cell {name} has no place")))
-        });
-        let cells = cells.collect::<Result<Vec<_>, _>>()?;
-        let mut drivers = HashMap::new();
-        for cell in &cells {
-            for port in cell.cell["connections"]
-                .as_object()
-                .into_iter()
-                .flat_map(|ports| ports.keys())
-            {
-                let Some(net) = cell.net(port) else {
-                    continue;
-                };
-                if (cell.kind, port.as_str()) == ("DCCA", "CLKO") {
-                    drivers.insert(net, RoutedDriver::Gate(*cell));
-                } else if let Some(port) = cell.output(port) {
-                    let (row, column) = (cell.row, cell.column);
-                    drivers.insert(net, RoutedDriver::Output(CellPort { row, column, port }));
-                }
-            }
-        }
-        Ok(Self { cells, drivers })
-    }
-
-    /// What drives a port; an open one is high.
-    fn source(&self, cell: &RoutedCell<'_>, port: &str) -> Option<Source> {
-        let mut net = cell.net(port);
-        // A clock passes at most one gate, and its pad.
-        for _ in 0..4 {
-            let Some(of) = net else {
-                return Some(Source::Constant(true));
-            };
-            match self.drivers.get(&of)? {
-                RoutedDriver::Output(output) => return Some(Source::Output(*output)),
-                RoutedDriver::Gate(gate) => net = gate.net("CLKI"),
-            }
-        }
-        None
-    }
 }
 
 struct Comparison<'a> {
@@ -254,7 +113,17 @@ impl Comparison<'_> {
         };
         let is_same_table = is_same(4, init, found);
         let is_same_pair = is_same(2, init & 0xF, found & 0xF);
-        self.setting(cell, "look-up table: another function of its inputs", is_same_table);
+        if mode == "DPRAM" {
+            let is_same_memory = routed.as_ref() == Some(&bits) && init == found;
+            self.setting(
+                cell,
+                "distributed RAM: other contents, or another address that is read",
+                is_same_memory,
+            );
+            self.written_table(cell, index)?;
+        } else {
+            self.setting(cell, "look-up table: another function of its inputs", is_same_table);
+        }
         if mode == "CCU2" {
             self.report.carries += 1;
             let is_alone = cell.parameter("CCU2_INJECT1") != "NO";
@@ -376,61 +245,6 @@ impl Comparison<'_> {
         Ok(())
     }
 
-    fn memory(&mut self, cell: &RoutedCell<'_>) -> Result<(), BitstreamError> {
-        self.report.memories += 1;
-        let settings = memory::Settings::new(self.routing, cell.row, cell.column)?;
-        for (key, value) in cell.cell["parameters"].as_object().into_iter().flatten() {
-            let value = value.as_str().unwrap_or_default().trim();
-            let bits = settings.routed_values(key, value);
-            self.setting(
-                cell,
-                &format!("{key} is {value} in the router's netlist"),
-                bits != Some(false),
-            );
-        }
-        let decoded = memory::MemorySettings::new(self.routing, cell.row, cell.column)?;
-        let mut stored = self.routing.contents(decoded.contents).to_vec();
-        stored.resize(memory::PARTS, 0);
-        let routed = routed_contents(cell);
-        for (index, _) in stored
-            .iter()
-            .zip(&routed)
-            .enumerate()
-            .filter(|(_, (bits, routed))| bits != routed)
-        {
-            self.setting(cell, &format!("word {index} of its contents"), false);
-        }
-        for port in memory::inputs() {
-            let routed = match (cell.parameter(&format!("{port}MUX")), self.routed.source(cell, &port)) {
-                ("0", _) => Some(Source::Constant(false)),
-                ("1", _) => Some(Source::Constant(true)),
-                ("INV", Some(Source::Constant(level))) => Some(Source::Constant(!level)),
-                (_, source) => source,
-            };
-            let is_routed_inverted = cell.parameter(&format!("{port}MUX")) == "INV";
-            let is_inverted = settings.is_inverted(&port, decoded.bits);
-            let bits = match self.routing.source(cell.row, cell.column, &format!("J{port}_EBR"))? {
-                Source::Constant(level) => Source::Constant(level != is_inverted),
-                source => {
-                    self.setting(
-                        cell,
-                        &format!("{port}: another polarity"),
-                        is_inverted == is_routed_inverted,
-                    );
-                    source
-                }
-            };
-            // What the netlist leaves open may be tied to any level.
-            let is_open = cell.is_open(&port) && cell.parameter(&format!("{port}MUX")).is_empty();
-            let any_level = is_open || !memory::is_used(&port, decoded.bits);
-            let constants = [routed.and_then(constant), constant(bits)];
-            if !(any_level && constants.iter().all(Option::is_some)) {
-                self.connection(cell, &port, routed, bits);
-            }
-        }
-        Ok(())
-    }
-
     /// An output pad.
     fn pad(&mut self, cell: &RoutedCell<'_>) -> Result<(), BitstreamError> {
         self.setting(cell, "an output that is switched off at times", cell.is_open("T"));
@@ -455,11 +269,20 @@ impl Comparison<'_> {
             };
             let index = cell.index().unwrap_or_default();
             match cell.kind {
+                "TRELLIS_COMB" if cell.parameter("MODE") == "RAMW_BLOCK" => {}
                 "TRELLIS_COMB" => {
                     known.extend([OutputPort::Table(index), OutputPort::Carry(index)].map(at));
                     known.insert(at(cell.output("OFX").unwrap_or(OutputPort::Table(index))));
                 }
                 "TRELLIS_FF" => _ = known.insert(at(OutputPort::Flop(index))),
+                "TRELLIS_RAMW" => {
+                    let address = (0..distributed_ram::BITS).map(OutputPort::WriteAddress);
+                    known.extend(
+                        address
+                            .chain((0..distributed_ram::BITS).map(OutputPort::WriteData))
+                            .map(at),
+                    );
+                }
                 "DP16KD" => {
                     let bits = (0..memory::PORT_BITS as u8).map(OutputPort::MemoryA);
                     known.extend(
@@ -491,38 +314,9 @@ impl Comparison<'_> {
     }
 }
 
-/// Contents of a memory of the router's netlist, in words of 9 bits.
-fn routed_contents(cell: &RoutedCell<'_>) -> Vec<u16> {
-    /// Each parameter has 16 pairs of words, padded to 20 bits.
-    const ROWS: usize = 64;
-    const PAIRS: usize = 16;
-    const PAIR_DIGITS: usize = 20;
-    const WORD_DIGITS: usize = 9;
-    let rows = (0..ROWS).flat_map(|row| {
-        let mut digits: Vec<u8> = cell.parameter(&format!("INITVAL_{row:02X}")).bytes().rev().collect();
-        digits.resize(PAIRS * PAIR_DIGITS, b'0');
-        let words = digits.chunks(PAIR_DIGITS).flat_map(|pair| {
-            let words = pair[..2 * WORD_DIGITS].chunks(WORD_DIGITS);
-            words
-                .map(|word| {
-                    word.iter()
-                        .rev()
-                        .fold(0u16, |word, digit| word << 1 | u16::from(*digit == b'1'))
-                })
-                .collect::<Vec<_>>()
-        });
-        words.collect::<Vec<_>>()
-    });
-    rows.collect()
-}
-
 fn constant(source: Source) -> Option<bool> {
     match source {
         Source::Constant(level) => Some(level),
         Source::Output(_) => None,
     }
-}
-
-fn unreadable(reason: String) -> BitstreamError {
-    BitstreamError::Unreadable { tool: TOOL, reason }
 }
