@@ -71,15 +71,9 @@ impl FlipReport {
     }
 }
 
-/// Makes [`PER_KIND`] flips of each kind that the bitstream has, some at a time, and compares each. `begin` is called before each.
-///
-/// # Errors
-/// The errors of the programs.
-pub fn flips(
-    fault_free: &FaultFree<'_>,
-    (tools, folder): (&dyn Toolchain, &Path),
-    begin: &(dyn Fn(FlipKind) + Sync),
-) -> Result<Vec<FlipReport>, BitstreamError> {
+/// Chooses [`PER_KIND`] flips of each kind that the bitstream has.
+#[must_use]
+pub fn choose(fault_free: &FaultFree<'_>) -> Vec<(FlipKind, TextBit)> {
     let mut random = Random::new(SEED);
     let mut chosen = Vec::new();
     for kind in FlipKind::ALL {
@@ -88,12 +82,26 @@ pub fn flips(
             chosen.extend((0..PER_KIND).map(|_| (kind, bits[random.below(bits.len() as u64) as usize])));
         }
     }
+    chosen
+}
+
+/// Makes these flips, some at a time, and compares each; `done` is called after each.
+///
+/// # Errors
+/// The errors of the programs.
+pub fn flips(
+    fault_free: &FaultFree<'_>,
+    (tools, folder): (&dyn Toolchain, &Path),
+    chosen: &[(FlipKind, TextBit)],
+    done: &(dyn Fn() + Sync),
+) -> Result<Vec<FlipReport>, BitstreamError> {
     let worker = |chosen: &[(FlipKind, TextBit)], folder: &Path| {
         fs::create_dir(folder).map_err(at(folder))?;
         let flip = |(kind, bit): &(FlipKind, TextBit)| {
-            begin(*kind);
             let (text, place) = tools.flipped(fault_free.text, *bit);
-            flip(fault_free, (tools, folder), (*kind, place, &text))
+            let report = flip(fault_free, (tools, folder), (*kind, place, &text))?;
+            done();
+            Ok(report)
         };
         chosen.iter().map(flip).collect::<Result<Vec<_>, BitstreamError>>()
     };

@@ -2,25 +2,33 @@
 //! to a pipe.
 
 use crate::output;
-use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
-use posicast_flow::{Observer, WorkProgress};
+use indicatif::{HumanDuration, MultiProgress, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use posicast_flow::{ExpectedTime, Observer, WorkProgress};
 use std::fmt::Write;
 use std::io::IsTerminal;
+use std::sync::LazyLock;
 use std::time::Duration;
+
+/// All bars, for two can be there at once.
+static BARS: LazyLock<MultiProgress> = LazyLock::new(|| MultiProgress::with_draw_target(target()));
 
 /// The front on a terminal.
 pub(crate) struct Terminal;
 
 impl Observer for Terminal {
     fn say(&self, message: &str) {
-        output::say(message);
+        BARS.suspend(|| output::say(message));
     }
 
     fn begin(&self, what: &str, steps: Option<u64>) -> Box<dyn WorkProgress> {
         Box::new(Shown(match steps {
             Some(steps) => bar(what, steps),
-            None => spinner(what),
+            None => spinner(what, None),
         }))
+    }
+
+    fn begin_timed(&self, what: &str, expected: Option<ExpectedTime>) -> Box<dyn WorkProgress> {
+        Box::new(Shown(spinner(what, expected)))
     }
 }
 
@@ -44,6 +52,7 @@ impl WorkProgress for Shown {
 impl Drop for Shown {
     fn drop(&mut self) {
         self.0.finish_and_clear();
+        BARS.remove(&self.0);
     }
 }
 
@@ -60,9 +69,14 @@ pub(crate) fn bar(what: &str, length: u64) -> ProgressBar {
     bar
 }
 
-/// A spinner for work whose length is not known.
-fn spinner(what: &str) -> ProgressBar {
-    let style = ProgressStyle::with_template("{spinner} {msg} {elapsed}");
+/// A spinner for work whose steps are not counted, with the time left if an earlier run tells it.
+fn spinner(what: &str, expected: Option<ExpectedTime>) -> ProgressBar {
+    let style = ProgressStyle::with_template("{spinner} {msg} {elapsed}{left}");
+    let left = move |state: &ProgressState, text: &mut dyn Write| {
+        // A write error only leaves the time out.
+        let _ = expected.map(|expected| write!(text, ", {}", left_in_all(expected, state.elapsed())));
+    };
+    let style = style.map(|style| style.with_key("left", left));
     let spinner = decorated(ProgressBar::with_draw_target(None, target()), what, style);
     spinner.enable_steady_tick(TICK);
     spinner
@@ -75,6 +89,20 @@ fn left(state: &ProgressState, text: &mut dyn Write) {
         0 => text.write_str("time left unknown yet"),
         _ => write!(text, "about {:#} left", HumanDuration(state.eta())),
     };
+}
+
+/// The time to the end of all work, after an earlier run.
+fn left_in_all(expected: ExpectedTime, elapsed: Duration) -> String {
+    match expected.left(elapsed) {
+        Some(left) => format!(
+            "about {:#} left in all, as in the last run of this kind",
+            HumanDuration(left)
+        ),
+        None => format!(
+            "longer than in the last run of this kind; then {:#}",
+            HumanDuration(expected.after)
+        ),
+    }
 }
 
 fn target() -> ProgressDrawTarget {
@@ -90,9 +118,25 @@ fn decorated(
     what: &str,
     style: Result<ProgressStyle, indicatif::style::TemplateError>,
 ) -> ProgressBar {
-    let bar = bar.with_message(what.to_owned());
+    let bar = BARS.add(bar).with_message(what.to_owned());
     match style {
         Ok(style) => bar.with_style(style),
         Err(_) => bar,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_time_left_is_said_until_it_is_not_known() {
+        let expected = ExpectedTime {
+            part: Duration::from_secs(120),
+            after: Duration::from_secs(240),
+        };
+        let of = |seconds| left_in_all(expected, Duration::from_secs(seconds));
+        assert_eq!(of(60), "about 5m left in all, as in the last run of this kind");
+        assert_eq!(of(121), "longer than in the last run of this kind; then 4m");
     }
 }

@@ -4,6 +4,7 @@
 mod bare;
 mod checks;
 mod document;
+mod durations;
 mod evidence;
 mod machine;
 mod subject;
@@ -107,6 +108,7 @@ pub fn bitstream(options: &Options, observer: &dyn Observer) -> Result<Outcome<D
         folder: scratch.path(),
         given: options.packed.as_deref(),
         machine: &file.machine.name,
+        axes: file.machine.axes.len(),
         clocks: options.clocks,
         seed: options.seed,
         observer,

@@ -44,7 +44,7 @@ mod warning;
 pub use bench::{Simulator, clocks};
 pub use failure::{Excerpt, Failure, Reason};
 pub use files::ResultForm;
-pub use observer::{Late, Observer, Silent, WorkProgress};
+pub use observer::{ExpectedTime, Late, Observer, Silent, WorkProgress};
 
 use posicast_system::output::OutputFiles;
 

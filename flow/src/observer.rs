@@ -9,6 +9,31 @@ pub trait Observer: Sync {
 
     /// A part of the work begins: `what` is its name, and `steps` the number of its steps if that is known.
     fn begin(&self, what: &str, steps: Option<u64>) -> Box<dyn WorkProgress>;
+
+    /// A part of the work begins whose steps cannot be counted, such as a run of another program; `expected` is how long it probably takes,
+    /// if that is known.
+    fn begin_timed(&self, what: &str, expected: Option<ExpectedTime>) -> Box<dyn WorkProgress> {
+        let _ = expected;
+        self.begin(what, None)
+    }
+}
+
+/// How long work probably takes, because an earlier run of the same kind took as long.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ExpectedTime {
+    /// The part that begins.
+    pub part: Duration,
+    /// All that follows it.
+    pub after: Duration,
+}
+
+impl ExpectedTime {
+    /// The time to the end of all after the part has taken `elapsed`; `None` if it has taken longer than it should: then nothing is known.
+    #[must_use]
+    pub fn left(self, elapsed: Duration) -> Option<Duration> {
+        let rest = self.part.checked_sub(elapsed)?;
+        Some(rest + self.after)
+    }
 }
 
 /// The progress of a part of the work, which ends when this is dropped.
@@ -96,6 +121,17 @@ mod tests {
             }
             Box::new(Silent)
         }
+    }
+
+    #[test]
+    fn the_time_left_is_that_of_the_part_and_all_that_follows() {
+        let seconds = Duration::from_secs;
+        let expected = ExpectedTime {
+            part: seconds(60),
+            after: seconds(100),
+        };
+        assert_eq!(expected.left(seconds(45)), Some(seconds(115)));
+        assert_eq!(expected.left(seconds(61)), None);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The steps of a bitstream, from its Verilog to the comparisons.
 
 use super::document::Evidence;
+use super::durations::{Durations, Part};
 use super::subject::Subject;
 use crate::observer::Observer;
 use posicast_bitstream::BitstreamError;
@@ -9,12 +10,14 @@ use posicast_bitstream::label::BitsLabel;
 use posicast_bitstream::toolchain::{BitsNetlist, Routed, Toolchain};
 use posicast_bitstream::top::TopFiles;
 use posicast_system::{kept, scratch};
+use serde::Serialize;
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 use std::{fs, io, thread};
 
 /// Prefix of the kept files.
-const KEPT_PREFIX: &str = "bitstream-";
+pub(super) const KEPT_PREFIX: &str = "bitstream-";
 
 /// What the steps work with.
 pub(super) struct Run<'a> {
@@ -26,6 +29,8 @@ pub(super) struct Run<'a> {
     pub(super) given: Option<&'a Path>,
     /// Name of the machine.
     pub(super) machine: &'a str,
+    /// Number of its axes.
+    pub(super) axes: usize,
     pub(super) clocks: Option<u64>,
     pub(super) seed: u64,
     pub(super) observer: &'a dyn Observer,
@@ -35,14 +40,13 @@ impl Run<'_> {
     /// Builds the bitstream of these Verilog files, reads it back, and compares it.
     pub(super) fn evidence(&self, sources: &[PathBuf]) -> Result<Evidence, BitstreamError> {
         let (tools, folder) = (self.tools, self.folder);
-        let during = |what: &str| self.observer.begin(what, None);
+        let mut durations = Durations::of_kind(&self.kind());
         let versions = tools.versions(folder)?;
         let key = self.key(sources, &versions)?;
         let label = BitsLabel::new(self.machine, &self.board(), &key);
         let given = self.given.map(|path| self.read_given(path, &label)).transpose()?;
-        let routed = self.routed(sources, &key)?;
-        let (packed, text, netlist, tiles) = {
-            let _shown = during("reading the bits back");
+        let routed = self.routed(sources, &key, &mut durations)?;
+        let (packed, text, netlist, tiles, cells) = self.timed(&mut durations, Part::ReadingBack, || {
             let own = tools.pack(&tools.labelled(&routed.text, &label.line()), folder)?;
             let (packed, text) = match given {
                 Some(given) => given,
@@ -59,9 +63,9 @@ impl Run<'_> {
                     tiles.differences.push("bytes outside the tiles".to_owned());
                 }
             }
-            (packed, text, netlist, tiles)
-        };
-        let cells = netlist.compare_cells(&routed.netlist)?;
+            let cells = netlist.compare_cells(&routed.netlist)?;
+            Ok((packed, text, netlist, tiles, cells))
+        })?;
         let network = netlist.network();
         let first_difference =
             |netlist: &dyn BitsNetlist| self.subject.first_difference(netlist, &routed.netlist, self.seed);
@@ -74,21 +78,50 @@ impl Run<'_> {
             lock_step: &first_difference,
         };
         // Reading the flips back takes as long as the lock step, and neither needs the other.
+        let begun = Instant::now();
         let (lock_step, flips) = thread::scope(|scope| {
             let flips = scope.spawn(|| self.flips(&fault_free));
             (self.lock_step(netlist.as_ref(), &routed), flips.join())
         });
+        let (lock_step, flips) = (
+            lock_step?,
+            flips.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?,
+        );
+        // With another number of clocks, the checks take another time.
+        if self.clocks.is_none() {
+            durations.took(Part::Checks, begun.elapsed());
+        }
         Ok(Evidence {
             versions,
             highest_mhz: routed.highest_mhz,
             tiles,
             cells,
-            lock_step: lock_step?,
-            flips: flips.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?,
+            lock_step,
+            flips,
             packed,
             verilog: netlist.verilog(&format!("{}_netlist", self.files.module)),
             seed: self.seed,
         })
+    }
+
+    /// The kind of bitstream, as a name without blanks: bitstreams of one kind take about the same time.
+    fn kind(&self) -> String {
+        let family = self.files.board.device.family().constraints_ending();
+        format!("{family}-{}-{}", self.subject.what(), self.axes)
+    }
+
+    /// Does a part of the work, and keeps its time.
+    fn timed<T>(
+        &self,
+        durations: &mut Durations,
+        part: Part,
+        work: impl FnOnce() -> Result<T, BitstreamError>,
+    ) -> Result<T, BitstreamError> {
+        let _shown = self.observer.begin_timed(part.what(), durations.expected(part));
+        let begun = Instant::now();
+        let done = work()?;
+        durations.took(part, begun.elapsed());
+        Ok(done)
     }
 
     /// Name of the board in a label.
@@ -134,7 +167,7 @@ impl Run<'_> {
     }
 
     /// The routed design of these Verilog files: that of an earlier run, if nothing has changed.
-    fn routed(&self, sources: &[PathBuf], key: &str) -> Result<Routed, BitstreamError> {
+    fn routed(&self, sources: &[PathBuf], key: &str, durations: &mut Durations) -> Result<Routed, BitstreamError> {
         let file = kept::folder().join(format!("{KEPT_PREFIX}{key}.json"));
         let earlier = kept::holds(&file).then(|| fs::read(&file).ok()).flatten();
         if let Some(routed) = earlier.and_then(|text| serde_json::from_slice(&text).ok()) {
@@ -142,16 +175,14 @@ impl Run<'_> {
                 .say("note: neither the Verilog nor the tools have changed since an earlier run, whose routed design is used again");
             return Ok(routed);
         }
-        let during = |what: &str| self.observer.begin(what, None);
-        let synthesised = {
-            let _shown = during("Yosys synthesises");
-            self.tools.synthesise(sources, &self.files.module, self.folder)?
-        };
+        let (tools, folder) = (self.tools, self.folder);
+        let synthesised = self.timed(durations, Part::Synthesis, || {
+            tools.synthesise(sources, &self.files.module, folder)
+        })?;
         synthesised.check_fit(&self.files.board)?;
-        let routed = {
-            let _shown = during("nextpnr places and routes");
-            self.tools.place_and_route(&self.files.constraints(), self.folder)?
-        };
+        let routed = self.timed(durations, Part::PlaceAndRoute, || {
+            tools.place_and_route(&self.files.constraints(), folder)
+        })?;
         // Where nothing can be kept, the next run takes as long as this one.
         let _ = keep(&routed, &file);
         Ok(routed)
@@ -192,20 +223,21 @@ impl Run<'_> {
     }
 
     fn flips(&self, fault_free: &FaultFree<'_>) -> Result<Vec<FlipReport>, BitstreamError> {
-        let bar = self.observer.begin("single faults in the bits", None);
-        flips::flips(fault_free, (self.tools, self.folder), &|kind| {
-            bar.rename(&format!("a fault in the bits: {}", kind.word()));
-        })
+        let chosen = flips::choose(fault_free);
+        let bar = self
+            .observer
+            .begin("single faults in the bits", Some(chosen.len() as u64));
+        flips::flips(fault_free, (self.tools, self.folder), &chosen, &|| bar.advance(1))
     }
 }
 
-/// Keeps a routed design for later runs.
-fn keep(routed: &Routed, file: &Path) -> io::Result<()> {
-    let folder = kept::folder();
-    fs::create_dir_all(&folder)?;
-    kept::remove_old(&folder, KEPT_PREFIX);
-    let work = scratch::Folder::new_in("build-", &folder)?;
-    let made = work.path().join("routed.json");
-    fs::write(&made, serde_json::to_vec(routed)?)?;
+/// Keeps a value, such as a routed design, for later runs.
+pub(super) fn keep(value: &impl Serialize, file: &Path) -> io::Result<()> {
+    let folder = file.parent().unwrap_or(Path::new("."));
+    fs::create_dir_all(folder)?;
+    kept::remove_old(folder, KEPT_PREFIX);
+    let work = scratch::Folder::new_in("build-", folder)?;
+    let made = work.path().join("value.json");
+    fs::write(&made, serde_json::to_vec(value)?)?;
     kept::keep(&made, file)
 }

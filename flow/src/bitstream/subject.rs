@@ -103,6 +103,15 @@ impl<'a> Subject<'a> {
         }
     }
 
+    /// What is built, as a word.
+    pub(super) fn what(&self) -> &'static str {
+        match self {
+            Self::Shapers(_) => "shapers",
+            Self::Stage { bare: None, .. } => "stage",
+            Self::Stage { .. } => "bare",
+        }
+    }
+
     /// The module whose instances are the blocks.
     pub(super) fn logic(&self) -> String {
         match self {
@@ -284,19 +293,36 @@ mod tests {
     use crate::design::DesignReport;
     use crate::observer::Silent;
     use posicast_bitstream::boards::board;
-    use std::path::Path;
+    use std::path::{Path, PathBuf};
 
-    /// A reader of the page connects wires as it says.
-    #[test]
-    fn the_page_of_the_first_light_names_the_pins_of_its_example() {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-        let path = root.join("examples/colorlight-i5.toml");
+    fn root() -> PathBuf {
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+    }
+
+    /// The files of the example of the first light.
+    fn first_light() -> TopFiles {
+        let path = root().join("examples/colorlight-i5.toml");
         let file = super::super::machine::on_board(&path, &board("colorlight-i5").unwrap()).unwrap();
         let report = DesignReport::new(&file.machine, &path).unwrap();
         let built = Built::new(&report, &path, &Silent).unwrap();
         let subject = Subject::new(&file.machine, &board("colorlight-i5").unwrap(), &built, None).unwrap();
-        let page = std::fs::read_to_string(root.join("docs/first-light.md")).unwrap();
-        let pins = subject.files().unwrap().pins;
+        subject.files().unwrap()
+    }
+
+    #[test]
+    fn an_open_wire_stops_the_axis() {
+        let constraints = first_light().constraints();
+        for port in ["emergency_stop_n", "x_limit_plus_n", "x_fault_n", "x_drive_ready"] {
+            let line = format!("\"{port}\" IO_TYPE=LVCMOS33 PULLMODE=DOWN;");
+            assert!(constraints.contains(&line), "{port}");
+        }
+    }
+
+    /// A reader of the page connects wires as it says.
+    #[test]
+    fn the_page_of_the_first_light_names_the_pins_of_its_example() {
+        let page = std::fs::read_to_string(root().join("docs/first-light.md")).unwrap();
+        let pins = first_light().pins;
         let wired: Vec<_> = pins.iter().filter(|pin| !pin.header.is_empty()).collect();
         assert!(wired.len() > 15);
         for pin in &wired {
