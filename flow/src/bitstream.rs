@@ -81,7 +81,12 @@ pub fn bitstream(options: &Options, observer: &dyn Observer) -> Result<Outcome<D
         None
     };
     let subject = Subject::new(&file.machine, &board, &built, bare).map_err(|error| failure(error).in_file(path))?;
-    let files = subject.files().map_err(|error| failure(error).in_file(path))?;
+    let files = subject.files().map_err(|error| match error {
+        BitstreamError::TooManyPins { needed, .. } => failure(error)
+            .in_file(path)
+            .or_help(&too_large::remedy_for_pins(needed)),
+        _ => failure(error).in_file(path),
+    })?;
     let tools = toolchain::installed(&board, &files.pins).map_err(failure)?;
     let quartus = sopc::board(&file.machine, path)?;
     let package = match options.packed {
@@ -118,6 +123,13 @@ pub fn bitstream(options: &Options, observer: &dyn Observer) -> Result<Outcome<D
             let remedy = too_large::remedy(&sources, &subject.logic(), &board, observer);
             failure(error).in_file(path).or_help(&remedy)
         }
+        BitstreamError::ToolFailed { .. } | BitstreamError::Unreadable { .. } | BitstreamError::UnknownCell(_) => {
+            let found = tools.versions(scratch.path()).unwrap_or_default();
+            match other_versions(&found, tools.tested_versions()) {
+                Some(help) => failure(error).or_help(&help),
+                None => failure(error),
+            }
+        }
         _ => failure(error),
     })?;
     let mut document = Document::new(&files, &file.machine, &evidence);
@@ -136,6 +148,21 @@ pub fn bitstream(options: &Options, observer: &dyn Observer) -> Result<Outcome<D
     Ok(Outcome {
         failed,
         ..Outcome::passed(document)
+    })
+}
+
+/// That the versions of the programs are not those of the tests; `None` if they are.
+fn other_versions(found: &[String; 2], tested: [&str; 2]) -> Option<String> {
+    let is_tested = found
+        .iter()
+        .zip(tested)
+        .all(|(found, tested)| found.starts_with(tested));
+    (!is_tested).then(|| {
+        format!(
+            "the programs are {}; posicast is tested with {}, which `scripts/install-tools bitstream` installs on Debian 12",
+            found.join(" and "),
+            tested.join(" and ")
+        )
     })
 }
 
@@ -164,5 +191,24 @@ fn failure(error: BitstreamError) -> Failure {
     match error {
         BitstreamError::Missing(_) => Failure::missing_tool(error),
         other => Failure::because(other),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn versions_that_are_not_those_of_the_tests_are_named() {
+        let tested = ["Yosys 0.23", "nextpnr-ice40 0.4"];
+        let found = |yosys: &str| [yosys.to_owned(), "nextpnr-ice40 0.4-1+b1".to_owned()];
+        assert_eq!(other_versions(&found("Yosys 0.23"), tested), None);
+        let help = other_versions(&found("Yosys 0.9"), tested).unwrap();
+        assert!(
+            help.starts_with(
+                "the programs are Yosys 0.9 and nextpnr-ice40 0.4-1+b1; posicast is tested with Yosys 0.23 and"
+            ),
+            "{help}"
+        );
     }
 }

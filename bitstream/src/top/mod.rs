@@ -305,6 +305,33 @@ mod tests {
         assert!(BoardTop::new("m", board, 1680, axes()).is_ok());
     }
 
+    /// An axis may be called as the line is.
+    #[test]
+    fn no_name_of_an_axis_collides_with_one_of_the_top() {
+        let names = [
+            "rx", "tx", "line", "crc", "led", "clk", "idle", "words", "result", "unused",
+        ];
+        for name in names {
+            // Of equal axes, the flag of the last one is in use.
+            let axes = vec![axis("x", 20), axis(name, 20)];
+            let top = BoardTop::new("m", board("icebreaker").unwrap(), 12_000, axes).unwrap();
+            let verilog = top.verilog();
+            let declared = verilog.lines().filter_map(|line| {
+                let line = line.trim_end_matches(',').split(" = ").next()?;
+                let words: Vec<&str> = line.trim_end_matches(';').split_whitespace().collect();
+                let is_declaration = matches!(words.first(), Some(&("wire" | "reg" | "input" | "output")));
+                is_declaration.then(|| words.into_iter().filter(|word| !word.starts_with('[')))
+            });
+            let of_kind = ["wire", "reg", "input", "output", "signed"];
+            let declared = declared.flatten().map(|word| word.trim_end_matches(','));
+            let declared: Vec<&str> = declared.filter(|word| !of_kind.contains(word)).collect();
+            assert!(declared.len() > 25 && declared.contains(&"tx_clocks"), "{declared:?}");
+            for (index, one) in declared.iter().enumerate() {
+                assert!(!declared[..index].contains(one), "{name}: {one} is declared twice");
+            }
+        }
+    }
+
     #[test]
     fn every_port_has_a_pin() {
         for board in crate::boards::BOARDS {

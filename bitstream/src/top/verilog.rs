@@ -83,11 +83,11 @@ module {module} (
     reg  {range} rx_clocks = {width}'d0;
     reg  [3:0] rx_bits   = 4'd0;
     reg  [7:0] rx_byte   = 8'd0;
-    reg        rx_valid  = 1'b0;
+    reg        rx_done   = 1'b0;
 
     always @(posedge clk) begin
         line     <= {{line[0], serial_rx}};
-        rx_valid <= 1'b0;
+        rx_done  <= 1'b0;
         if (rst) begin
             rx_bits <= 4'd0;
         end else if (rx_bits == 4'd0) begin
@@ -100,7 +100,7 @@ module {module} (
             // A start bit that was only a spike ends the byte.
             rx_bits   <= (rx_bits == 4'd10 && line[1]) ? 4'd0 : rx_bits - 4'd1;
             if (rx_bits != 4'd1) rx_byte <= {{line[1], rx_byte[7:1]}};
-            rx_valid  <= (rx_bits == 4'd1) && line[1];
+            rx_done   <= (rx_bits == 4'd1) && line[1];
         end
     end
 ",
@@ -156,7 +156,7 @@ module {module} (
     always @(posedge clk) begin
         if (rst) begin
             place <= {place}'d0;
-        end else if (rx_valid) begin
+        end else if (rx_done) begin
             idle <= {idle}'d0;
             if (place == {place}'d0) begin
                 place <= (rx_byte == 8'h{COMMAND_MARK:02x}) ? {place}'d1 : {place}'d0;

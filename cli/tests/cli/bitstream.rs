@@ -325,37 +325,6 @@ fn long_cli_the_bits_of_shapers_on_gowin_compute_the_model() {
     assert!(said.contains("this is no intact bitstream of GW1NR-9C"), "{said}");
 }
 
-#[test]
-fn long_cli_the_bits_of_a_stage_compute_the_model() {
-    let text = std::fs::read_to_string(example("vertical-slide.toml")).unwrap();
-    let [before, errors] = text.split("[axis.error_table]").collect::<Vec<_>>()[..] else {
-        panic!("no error table");
-    };
-    let rest = errors.split_once("[axis.pwm]").unwrap().1;
-    let (scratch, machine) = scratch(&format!("{before}[axis.pwm]{rest}\n[link]\nbaud = 1_000_000\n"));
-    let folder = scratch.path().join("out");
-    let output = bitstream(&machine, "colorlight-i5", &folder, &["--json"]);
-    let document = document_of(&output);
-    let number = |pointer: &str| document.pointer(pointer).and_then(serde_json::Value::as_u64).unwrap();
-    assert_eq!(
-        (number("/cells/differences"), number("/lock_step/power_on_clocks")),
-        (0, 256)
-    );
-    assert!(number("/cells/tables") > 8_000 && number("/cells/memories") > 5);
-    assert_eq!(document["lock_step"]["rows"]["result"], "match");
-    assert!(number("/lock_step/rows/cycles") >= 1_000_000);
-    let flips = document["flips"].as_array().unwrap();
-    assert!(flips.iter().all(|flip| flip["cells"].as_u64() > Some(0)), "{flips:#?}");
-    // Every input that stops the axis has a pin of its own, which an open wire leaves low.
-    let constraints = std::fs::read_to_string(folder.join("bitstream/vertical_slide_colorlight_i5.lpf")).unwrap();
-    for port in ["emergency_stop_n", "z_limit_plus_n", "z_fault_n", "z_drive_ready"] {
-        assert!(
-            constraints.contains(&format!("\"{port}\" IO_TYPE=LVCMOS33 PULLMODE=DOWN;")),
-            "{port}"
-        );
-    }
-}
-
 /// Posicast's own host moves the axis by the bits; the example is that of the page of the first light.
 #[test]
 fn long_cli_the_bits_of_a_bare_board_move_an_axis() {
@@ -418,6 +387,20 @@ fn cli_a_bitstream_refuses_what_it_cannot_build() {
             "baud = 1_000_000",
         ],
     );
+    let text = std::fs::read_to_string(example("colorlight-i5.toml")).unwrap();
+    let (head, axis) = text.split_once("[[axis]]").unwrap();
+    let axes = ["x", "y", "z"].map(|name| format!("[[axis]]{}", axis.replace("\"x\"", &format!("\"{name}\""))));
+    let (_scratch, machine) = scratch(&format!("{head}{}", axes.concat()));
+    refused(
+        &bitstream(&machine, "colorlight-i5", &output, &[]),
+        &output,
+        &[
+            "does not fit colorlight-i5",
+            "40 available on its headers",
+            "no board has as many",
+            "--bare-board",
+        ],
+    );
     let (_scratch, machine) = scratch(
         &short_machine(8_000)
             .replace("50_000_000", "48_000_000")
@@ -438,6 +421,33 @@ fn cli_a_bitstream_refuses_what_it_cannot_build() {
         &bitstream(&machine, "icebreaker", &output, &[]),
         &output,
         &["a frame takes 720 clocks", "480 clocks apart", "at most 16666 Hz"],
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn cli_a_bitstream_names_the_versions_of_programs_that_fail() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().unwrap();
+    let yosys = folder.path().join("yosys");
+    let script = "#!/bin/sh\nif [ \"$1\" = -V ]; then echo 'Yosys 0.9 (git sha1 1979e0b)'; else echo 'no such command'; exit 1; fi\n";
+    std::fs::write(&yosys, script).unwrap();
+    std::fs::set_permissions(&yosys, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let mut command = posicast();
+    command
+        .env("POSICAST_CACHE", folder.path())
+        .env("POSICAST_YOSYS", yosys);
+    let output = folder.path().join("out");
+    command.arg("bitstream").arg(example("robot-joint.toml"));
+    command.args(["--board", "icebreaker", "-o"]).arg(&output);
+    refused(
+        &command.output().unwrap(),
+        &output,
+        &[
+            "no such command",
+            "the programs are Yosys 0.9 and nextpnr-ice40",
+            "posicast is tested with Yosys 0.23",
+        ],
     );
 }
 

@@ -17,6 +17,17 @@ pub(super) fn remedy(files: &[PathBuf], top: &str, board: &FpgaBoard, observer: 
     [largest(&blocks), larger_boards(board)].concat().join("; ")
 }
 
+/// Names the boards with enough pins on their headers, and what needs fewer.
+pub(super) fn remedy_for_pins(needed: usize) -> String {
+    let fits = BOARDS.iter().filter(|board| board.header.len() >= needed);
+    let names: Vec<&str> = fits.map(|board| board.name).collect();
+    let boards = match names.as_slice() {
+        [] => "no board has as many".to_owned(),
+        some => format!("boards with as many: {}", some.join(", ")),
+    };
+    format!("{boards}; an axis less takes fewer, and --bare-board none")
+}
+
 /// The largest blocks, as a list of at most one sentence.
 fn largest(blocks: &[BlockEstimate]) -> Vec<String> {
     let mut blocks: Vec<&BlockEstimate> = blocks.iter().collect();
@@ -49,6 +60,15 @@ fn larger_boards(board: &FpgaBoard) -> Vec<String> {
 mod tests {
     use super::*;
     use posicast_bitstream::boards::board;
+
+    #[test]
+    fn boards_with_as_many_pins_are_named() {
+        assert_eq!(
+            remedy_for_pins(41),
+            "boards with as many: ulx3s-12f, ulx3s-25f, ulx3s-85f; an axis less takes fewer, and --bare-board none"
+        );
+        assert!(remedy_for_pins(52).starts_with("no board has as many; "));
+    }
 
     #[test]
     fn larger_boards_are_those_with_more_cells() {
