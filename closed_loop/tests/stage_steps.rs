@@ -1,6 +1,7 @@
 //! A stage with steps and its motors: what the motors do is what the machine file says, and an overrun is seen.
 #![allow(clippy::unwrap_used)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
+use posicast_blocks::axis::Cause;
 use posicast_closed_loop::stage_run::{Shaping, StageRun};
 
 use crate::support::{machine, stage};
@@ -54,4 +55,38 @@ fn an_overrun_motor_loses_whole_pitches() {
         moved.lost_steps
     );
     assert_eq!(moved.lost_steps[1], 0);
+}
+
+/// The printer with a scale of ten counts per step at the load of X.
+fn with_scale(limits: &str, resonance: &str) -> String {
+    let table = format!("[axis.scale]\ncounts_per_unit = 800_000\n\n[axis.limits]\n{limits}\n");
+    let text = PRINTER.replacen("[axis.limits]\n", &table, 1);
+    text.replacen("resonance_hz = 120.0 ", &format!("resonance_hz = {resonance} "), 1)
+}
+
+/// Names of the causes with which X stopped in its move without a shaper; none if it did not.
+fn stopped_by(text: &str) -> Vec<Cause> {
+    let machine = machine(text);
+    let config = stage(&machine).config;
+    let run = StageRun::new(&machine, &config, 1).unwrap();
+    let trouble = run.moved(Shaping::Unshaped, 1.0).unwrap().trouble;
+    let causes = trouble.map_or(0, |trouble| trouble.causes);
+    Cause::ALL
+        .into_iter()
+        .filter(|cause| causes & cause.bit() != 0)
+        .collect()
+}
+
+#[test]
+fn a_lag_passes_and_a_stall_stops_the_axis() {
+    // At 5 m/s² the load, 52 Hz, is 4 steps behind, and the motor, 60 Hz, 3 more: while it accelerates, and while it rings.
+    let lag = "deviation = 50e-6";
+    assert_eq!(stopped_by(&with_scale(lag, "60.0")), [Cause::Deviation]);
+    assert_eq!(
+        stopped_by(&with_scale(&format!("{lag}\ndeviation_s = 0.5"), "60.0")),
+        []
+    );
+    // A motor that is pulled over falls behind for good, by 64 steps: 0.8 mm.
+    let overrun = "deviation = 0.4e-3\ndeviation_s = 0.02";
+    assert_eq!(stopped_by(&with_scale(overrun, "20.0")), [Cause::Deviation]);
 }

@@ -29,6 +29,7 @@
 //! | [`axis`] | the supervisor of an axis: states, limits, brake, faults |
 //! | [`drive_command`] | the drive command: the duty for the PWM, from the controller or, in direct mode, manual |
 //! | [`linear_scale`] | the linear scale: compares motor and scale; deviation, position, velocity |
+//! | [`lasting_deviation`] | what passes the deviation on to the supervisor once it has lasted |
 //! | [`trace`] | the trace memory: records signals of an axis, tick by tick, around a trigger |
 //! | [`uart_bridge`] | the bridge from a serial line to the registers |
 //! | [`spi_bridge`] | the bridge from SPI to the registers |
@@ -52,6 +53,7 @@ pub mod inline_axis;
 pub mod inline_group;
 pub mod inline_shaper;
 mod kernel;
+pub mod lasting_deviation;
 pub mod linear_scale;
 mod link_frames;
 pub mod linked_stage;

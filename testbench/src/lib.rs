@@ -97,6 +97,7 @@ pub(crate) const REGISTRY: &[RegistryRow] = &[
     parts::DIVIDER_SHARE,
     parts::GROUP,
     parts::INLINE_GROUP,
+    parts::LASTING_DEVIATION,
     parts::SAMPLE_SELECT,
     parts::SETTING_BANKS,
     registers::ROW,

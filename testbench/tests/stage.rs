@@ -89,6 +89,7 @@ fn quick(axes: usize) -> StageConfig {
         ) = (3, 1, 1);
         (watched.saturation_ticks, watched.lost_ticks, watched.lost_command) = (3, 3, 50 << 12);
         watched.deviation_limit = if axis.scale.is_some() { 20 } else { 0 };
+        watched.deviation_ticks = if name == "z" { 2 } else { 0 };
         (watched.direct_hold_ticks, watched.direct_limit) = (2, 30);
         watched.limits_after_homing = matches!(name, "y" | "z");
         quick.axes.push(axis);

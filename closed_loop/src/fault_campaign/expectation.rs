@@ -41,7 +41,7 @@ pub enum Others {
 pub enum Seen {
     /// |e| exceeds its limit.
     FollowingError,
-    /// |motor − scale| exceeds its limit.
+    /// |motor − scale| exceeds its limit, and has done so for as many ticks as it may.
     Deviation,
     /// The command was clamped for `SATURATION_TICKS`, or there was no count under a command for `LOST_TICKS`.
     Stuck,

@@ -35,10 +35,12 @@ pub(super) const FILTER_CLOCKS: u64 = 8;
 pub(super) const BRAKE_APPLY_TICKS: u64 = 2;
 /// Number of ticks without a count under a command after which the encoder counts as lost.
 pub(super) const LOST_TICKS: u64 = 10;
+/// Ticks for which an axis with steps may deviate from its scale.
+pub(super) const STALL_TICKS: u64 = 9;
 /// Number of consecutive ticks for which the command may be clamped.
 pub(super) const SATURATION_TICKS: u64 = 8;
 const BRAKE_RELEASE_TICKS: u64 = 2;
-const TICK_S: f64 = 1.0 / SAMPLE_HZ;
+pub(super) const TICK_S: f64 = 1.0 / SAMPLE_HZ;
 
 /// The stage under test: its machine and its configuration.
 #[derive(Debug, Clone)]

@@ -50,6 +50,9 @@ pub(super) struct Observation {
     from: SupervisorState,
     lost_command: u32,
     deviation_limit: u32,
+    /// Ticks for which a deviation may last, and those for which it has lasted.
+    deviation_ticks: u64,
+    deviates: u64,
     still: Still,
     pulsing: bool,
     /// Command at the last tick, and its change in each of the last two.
@@ -111,6 +114,8 @@ impl Observation {
             },
             lost_command: watched.lost_command,
             deviation_limit: watched.deviation_limit,
+            deviation_ticks: watched.deviation_ticks.into(),
+            deviates: 0,
             still: Still::default(),
             pulsing: false,
             command: bench.at(probe("command_position")?) as u32 as i32,
@@ -171,10 +176,11 @@ impl Observation {
         let signed = |probe: Option<Probe>| value(probe) as u32 as i32;
         let size = |value: i32| (value ^ (value >> 31)) as u32;
         let probes = &self.probes;
-        let deviates = || {
-            self.deviation_limit != 0
-                && u64::from(size(signed(Some(probes.deviation)))) > u64::from(self.deviation_limit)
-        };
+        if tick {
+            let beyond = size(signed(Some(probes.deviation))) > self.deviation_limit;
+            self.deviates = if beyond { self.deviates + 1 } else { 0 };
+        }
+        let deviates = self.deviation_limit != 0 && self.deviates > self.deviation_ticks;
         let is_stuck = value(probes.limited_ticks) >= SATURATION_TICKS || self.still.ticks >= LOST_TICKS;
         let is = match seen {
             Seen::Segments => (value(Some(probes.underrun)) | value(Some(probes.overflow))) != 0,
@@ -182,8 +188,8 @@ impl Observation {
             Seen::Range => (value(probes.cut_high) | value(probes.cut_low)) & 1 != 0,
             _ if !tick => false,
             Seen::FollowingError => u64::from(size(signed(probes.error))) > value(probes.error_limit),
-            Seen::Deviation => deviates(),
-            Seen::Lost => deviates() || is_stuck,
+            Seen::Deviation => deviates,
+            Seen::Lost => deviates || is_stuck,
             Seen::SoftLimit => {
                 let shaped = signed(Some(probes.shaped));
                 shaped > signed(Some(probes.soft_plus)) || shaped < signed(Some(probes.soft_minus))

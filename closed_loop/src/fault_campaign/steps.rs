@@ -8,6 +8,7 @@ use posicast_machine::machine_file::{AxisSection, LimitsSection, StepsSection};
 
 use super::expectation::{Due, Expectation, FAULT, Seen, bits};
 use super::kind::{FaultKind, FaultRow, TABLE};
+use super::machine::{STALL_TICKS, TICK_S};
 
 /// A million steps per second, four times the largest velocity.
 const TIMES: StepTimesInSeconds = StepTimesInSeconds {
@@ -59,6 +60,8 @@ pub(super) fn change(axis: &mut AxisSection) {
         following_error: None,
         saturation_s: 0.0,
         encoder_lost_s: 0.0,
+        // A stall acts once it has lasted.
+        deviation_s: STALL_TICKS as f64 * TICK_S,
         ..limits
     });
 }
@@ -78,6 +81,8 @@ pub(super) fn rows() -> Vec<FaultRow> {
     let common = common.map(|row| match row.kind {
         // The motor stands: the drive has taken all steps.
         FaultKind::Jam => FaultRow {
+            name: "stall",
+            injected: "the motor stands while steps come",
             expects: DEVIATES,
             ..row
         },

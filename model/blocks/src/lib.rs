@@ -17,6 +17,7 @@ pub mod group;
 pub mod inline_axis;
 pub mod inline_group;
 pub mod inline_shaper;
+pub mod lasting_deviation;
 pub mod linear_scale;
 pub mod link;
 mod link_frames;

@@ -17,6 +17,7 @@ use posicast_blocks::excitation::Excitation;
 use posicast_blocks::group::Group;
 use posicast_blocks::inline_axis::{InlineAxis, InlineAxisConfig};
 use posicast_blocks::inline_group::InlineGroup;
+use posicast_blocks::lasting_deviation::LastingDeviation;
 use posicast_blocks::linear_scale::LinearScale;
 use posicast_blocks::pulse_counter::PulseCounter;
 use posicast_blocks::pwm::{BridgeMode, Pwm};
@@ -224,6 +225,17 @@ fn blocks() -> Vec<Tried> {
             "linear_scale",
             &[("tick", RARE), ("velocity_valid", RARE), ("align", RARE), ("rst", RARE)],
             LinearScale::new,
+        ),
+        tried(
+            "lasting_deviation",
+            &[
+                ("tick", RARE),
+                ("rst", RARE),
+                ("deviation", &[0, 4, 7]),
+                ("limit", &[5]),
+                ("ticks", &[2]),
+            ],
+            LastingDeviation::new,
         ),
         tried("error_table", ERROR_TABLE, || {
             let format = ErrorTableFormat {

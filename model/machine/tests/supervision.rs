@@ -51,6 +51,7 @@ const LEFT_OUT: Supervision = Supervision {
     limits_after_homing: false,
     following_error_limit: 0,
     deviation_limit: 0,
+    deviation_ticks: 0,
     saturation_ticks: 0,
     lost_command: 0,
     lost_ticks: 0,
@@ -79,7 +80,7 @@ fn a_key_left_out_gives_its_documented_word() {
 #[test]
 fn golden_words_worked_out_by_hand() {
     let limits = "travel = [-0.1, 0.1]\nsoft_limits_after_homing = true\nfollowing_error = 0.001\nbrake_release_s = 0.05\nbrake_apply_s = 0.03\n\
-                  acceleration = 8.0\ndeviation = 50e-6\nsaturation_s = 0.3\nencoder_lost_s = 0.02\nwatchdog_s = 0.5\n\
+                  acceleration = 8.0\ndeviation = 50e-6\ndeviation_s = 0.02\nsaturation_s = 0.3\nencoder_lost_s = 0.02\nwatchdog_s = 0.5\n\
                   line_filter_s = 1e-6\noff = [\"watchdog\"]\ndirect_duty = 0.05\ndirect_hold_s = 0.1\nexcitation = 10e-6";
     let expected = Supervision {
         off_causes: 0b0010_0000_0000_0011,
@@ -93,6 +94,7 @@ fn golden_words_worked_out_by_hand() {
         // 1000 counts in units of 1/65536.
         following_error_limit: 65_536_000,
         deviation_limit: 50,
+        deviation_ticks: 200,
         saturation_ticks: 3000,
         // Half of 3000 mA, times 4096.
         lost_command: 6_144_000,
@@ -121,7 +123,7 @@ fn golden_words_worked_out_by_hand() {
         ]
     );
     assert_eq!(found[4..8], [25_600_000, -25_600_000, 1, 65_536_000]);
-    assert_eq!(found.len(), 19);
+    assert_eq!(found.len(), 20);
     // A velocity drive has half of 500 mm/s.
     let velocity = of(&machine("", VELOCITY, limits)).unwrap();
     assert_eq!((velocity.lost_command, velocity.watches_direction), (1_024_000, true));

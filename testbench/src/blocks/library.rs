@@ -223,6 +223,7 @@ const SUPERVISION: Supervision = Supervision {
     limits_after_homing: true,
     following_error_limit: 0,
     deviation_limit: 0,
+    deviation_ticks: 0,
     saturation_ticks: 3,
     lost_command: 50 << 12,
     lost_ticks: 3,

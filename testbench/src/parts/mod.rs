@@ -1,5 +1,5 @@
 //! The bench of the small blocks that connect others: schedule, divider share, group, inline group, time base, sample
-//! select, setting banks.
+//! select, setting banks, lasting deviation.
 
 pub(crate) mod proofs;
 pub(crate) mod stimuli;
@@ -15,11 +15,12 @@ use posicast_blocks::sliding_mode::Settings;
 use posicast_blocks::{ClockedBlock, Port};
 use posicast_hdl::emit::{EmitError, Module};
 use posicast_hdl::{
-    SimulationError, divider_share, group, inline_group, sample_select, schedule, setting_banks, time_base,
+    SimulationError, divider_share, group, inline_group, lasting_deviation, sample_select, schedule, setting_banks,
+    time_base,
 };
 
 use crate::blocks::changes::Changes;
-use crate::blocks::registry::{RegistryRow, one, small};
+use crate::blocks::registry::{AreaRow, RegistryRow, one, small};
 use crate::blocks::{Bins, Block};
 use crate::formal::refused;
 use crate::shaper::MOTION;
@@ -123,6 +124,16 @@ pub(crate) const INLINE_GROUP: RegistryRow = RegistryRow {
     mutants: trials::INLINE_GROUP,
     ..RegistryRow::EMPTY
 };
+pub(crate) const LASTING_DEVIATION: RegistryRow = RegistryRow {
+    name: "lasting_deviation",
+    benches: |sizes| Ok(one(PartBlock::new(SmallPart::LastingDeviation, &sizes.prefix))),
+    small: || Ok(small(PartBlock::new(SmallPart::LastingDeviation, ""), "")),
+    proofs: || Ok(vec![proofs::lasting_deviation()?]),
+    trials: || Ok(vec![trials::trial(SmallPart::LastingDeviation, "")]),
+    mutants: trials::LASTING_DEVIATION,
+    areas: || Ok(vec![AreaRow::new("", lasting_deviation::emit("")?)]),
+    ..RegistryRow::EMPTY
+};
 pub(crate) const SAMPLE_SELECT: RegistryRow = RegistryRow {
     name: "sample_select",
     benches: |sizes| Ok(one(PartBlock::new(WIDE_SAMPLES, &sizes.prefix))),
@@ -169,6 +180,8 @@ pub enum SmallPart {
     Group(usize),
     /// `inline_group`: what this many axes of the inline shaper share.
     InlineGroup(usize),
+    /// `lasting_deviation`: passes a deviation on once it has lasted.
+    LastingDeviation,
     /// `time_base`: makes ticks of this length.
     TimeBase(DividerConfig),
     /// `sample_select`: selects the source of samples.
@@ -202,6 +215,7 @@ impl PartBlock {
             SmallPart::DividerShare(channels) => (Model::DividerShare(channels), format!("{channels} channels")),
             SmallPart::Group(axes) => (Model::Group(axes), format!("{axes} axes")),
             SmallPart::InlineGroup(axes) => (Model::InlineGroup(axes), format!("{axes} axes")),
+            SmallPart::LastingDeviation => (Model::LastingDeviation, "alone".to_owned()),
             SmallPart::TimeBase(config) => {
                 let clocks = format!("{} clocks per tick", config.tick_clocks());
                 (Model::TimeBase(config), clocks)
@@ -249,6 +263,7 @@ impl Block for PartBlock {
             SmallPart::DividerShare(channels) => divider_share::emit(*channels, prefix),
             SmallPart::Group(axes) => group::emit(*axes, prefix),
             SmallPart::InlineGroup(axes) => inline_group::emit(*axes, prefix),
+            SmallPart::LastingDeviation => lasting_deviation::emit(prefix),
             SmallPart::TimeBase(config) => time_base::emit(config, prefix),
             SmallPart::SampleSelect { word_bits, channels } => sample_select::emit(*word_bits, *channels, prefix),
             SmallPart::SettingBanks(settings) => setting_banks::emit(settings, prefix),
@@ -262,6 +277,7 @@ impl Block for PartBlock {
             SmallPart::DividerShare(channels) => divider_share::name(*channels, prefix),
             SmallPart::Group(axes) => group::name(*axes, prefix),
             SmallPart::InlineGroup(axes) => inline_group::name(*axes, prefix),
+            SmallPart::LastingDeviation => lasting_deviation::name(prefix),
             SmallPart::TimeBase(config) => time_base::name(config, prefix),
             SmallPart::SampleSelect { word_bits, channels } => sample_select::name(*word_bits, *channels, prefix),
             SmallPart::SettingBanks(_) => setting_banks::name(prefix),
@@ -278,6 +294,7 @@ impl Block for PartBlock {
             SmallPart::DividerShare(channels) => divider_share::simulate(*channels),
             SmallPart::Group(axes) => group::simulate(*axes),
             SmallPart::InlineGroup(axes) => inline_group::simulate(*axes),
+            SmallPart::LastingDeviation => lasting_deviation::simulate(),
             SmallPart::TimeBase(config) => time_base::simulate(config),
             SmallPart::SampleSelect { word_bits, channels } => sample_select::simulate(*word_bits, *channels),
             SmallPart::SettingBanks(settings) => setting_banks::simulate(settings),

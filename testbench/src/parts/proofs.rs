@@ -3,10 +3,13 @@
 use posicast_blocks::divider::DividerConfig;
 use posicast_blocks::schedule::ScheduleConfig;
 use posicast_blocks::{
-    divider_share as share_model, group as group_model, inline_group as inline_model, sample_select as select_model,
-    schedule as schedule_model, setting_banks as banks_model, time_base as time_model,
+    divider_share as share_model, group as group_model, inline_group as inline_model,
+    lasting_deviation as lasting_model, sample_select as select_model, schedule as schedule_model,
+    setting_banks as banks_model, time_base as time_model,
 };
-use posicast_hdl::{divider_share, group, inline_group, sample_select, schedule, setting_banks, time_base};
+use posicast_hdl::{
+    divider_share, group, inline_group, lasting_deviation, sample_select, schedule, setting_banks, time_base,
+};
 
 use crate::Error;
 use crate::formal::{Engine, INDUCTION, Task, refused};
@@ -44,6 +47,11 @@ pub(crate) fn inline_group(axes: usize) -> Result<Task, Error> {
     let block = (inline_group::emit(axes, "")?, inline_model::ports(axes));
     let task = Task::new("inline_group", &format!("{axes} axes"), Engine::Pdr, block);
     Ok(task.properties(&macros, include_str!("inline_group.sv")))
+}
+
+pub(crate) fn lasting_deviation() -> Result<Task, Error> {
+    let block = (lasting_deviation::emit("")?, lasting_model::ports());
+    Ok(Task::new("lasting_deviation", "", INDUCTION, block).properties(&[], include_str!("lasting_deviation.sv")))
 }
 
 pub(crate) fn schedule(clocks: u32) -> Result<Task, Error> {

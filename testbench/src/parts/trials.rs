@@ -37,6 +37,23 @@ pub(super) const INLINE_GROUP: &[BlockMutant] = &[
     ),
     BlockMutant::new("a clear that lasts", "& !clear_before", ""),
 ];
+pub(super) const LASTING_DEVIATION: &[BlockMutant] = &[
+    BlockMutant::new(
+        "a deviation that lasts a tick longer",
+        "count >= ticks",
+        "count > ticks",
+    ),
+    BlockMutant::new(
+        "a negative deviation of no size",
+        "size = ~deviation_bits",
+        "size = 32'd0",
+    ),
+    BlockMutant::new(
+        "a count that goes on after an excursion",
+        "count_next = 16'd0",
+        "count_next = count",
+    ),
+];
 pub(super) const SETTING_BANKS: &[BlockMutant] = &[
     BlockMutant::new(
         "a read-back of another row",

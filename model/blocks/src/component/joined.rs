@@ -12,6 +12,7 @@ use crate::excitation::Excitation;
 use crate::group::Group;
 use crate::inline_axis::{InlineAxis, InlineAxisConfig};
 use crate::inline_group::InlineGroup;
+use crate::lasting_deviation::LastingDeviation;
 use crate::linear_scale::LinearScale;
 use crate::pulse_counter::PulseCounter;
 use crate::pwm::{Pwm, PwmConfig};
@@ -62,6 +63,8 @@ pub enum ComponentPart {
     DriveCommand,
     /// The linear scale, which compares motor and scale.
     LinearScale,
+    /// What passes the deviation from a scale on once it has lasted.
+    LastingDeviation,
     /// A measured error over position, the machine's in bank 0.
     ErrorTable(Box<ErrorTableConfig>),
     /// A source of encoder edges in front of the pulse counter.
@@ -102,6 +105,7 @@ impl ComponentPart {
             Self::Axis => "axis",
             Self::DriveCommand => "drive_command",
             Self::LinearScale => "linear_scale",
+            Self::LastingDeviation => "lasting_deviation",
             Self::ErrorTable(_) => "error_table",
             Self::EncoderGenerator => "encoder_generator",
             Self::Excitation => "excitation",
@@ -148,6 +152,7 @@ impl ComponentPart {
             Self::Axis => Box::new(Axis::new()),
             Self::DriveCommand => Box::new(DriveCommand::new()),
             Self::LinearScale => Box::new(LinearScale::new()),
+            Self::LastingDeviation => Box::new(LastingDeviation::new()),
             Self::ErrorTable(config) => Box::new(ErrorTable::new(config)),
             Self::EncoderGenerator => Box::new(EncoderGenerator::new()),
             Self::Excitation => Box::new(Excitation::new()),

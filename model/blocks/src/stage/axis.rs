@@ -164,6 +164,8 @@ const PWM: Nets = &[
     ("trigger", "pwm_trigger"),
 ];
 
+/// Net of the deviation that has lasted.
+const LASTING_DEVIATION: &str = "lasting_deviation";
 /// Name of the part that counts the scale's pulses.
 const SCALE_COUNTER: &str = "scale_counter";
 
@@ -312,6 +314,9 @@ pub(super) fn join(axis: &StageAxis, tick_clocks: u32) -> Result<JoinedBlocks, C
     if axis.scale.is_some() {
         blocks.push((SCALE_COUNTER.to_owned(), ComponentPart::PulseCounter));
         blocks.push(("linear_scale".to_owned(), ComponentPart::LinearScale));
+        if axis.deviation_lasts() {
+            blocks.push(("lasting_deviation".to_owned(), ComponentPart::LastingDeviation));
+        }
     }
     let (driven, read) = hardware(&axis_window(axis));
     let names = |lists: &[&[&str]]| -> Vec<String> {
@@ -377,6 +382,10 @@ fn wire(axis: &StageAxis, tick_clocks: u32, block: &ComponentPart, part: Part) -
                 .tied("use_scale", on_scale.into()),
             None => part,
         },
+        ComponentPart::LastingDeviation => part
+            .tied("limit", watched.deviation_limit.into())
+            .tied("ticks", watched.deviation_ticks.into())
+            .on("lasting", LASTING_DEVIATION),
         ComponentPart::ErrorTable(table) => on(part, ERROR_TABLE)
             .on(
                 "drive_enable",
@@ -512,6 +521,7 @@ fn supervisor(axis: &StageAxis, part: Part) -> Part {
         Follower::Steps(_) => steps::supervisor(part),
     };
     match axis.scale {
+        Some(_) if axis.deviation_lasts() => part.on("deviation", LASTING_DEVIATION),
         Some(_) => part,
         None => part
             .tied("deviation", 0)

@@ -95,6 +95,11 @@ impl StageAxis {
         }
     }
 
+    /// Whether a deviation from its scale acts only once it has lasted.
+    pub fn deviation_lasts(&self) -> bool {
+        self.scale.is_some() && self.supervision.deviation_ticks > 0
+    }
+
     /// Its step generator; `None` on an axis with a controller.
     pub fn steps(&self) -> Option<&StepGeneratorConfig> {
         match &self.follower {

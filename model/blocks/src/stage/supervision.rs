@@ -22,6 +22,8 @@ pub struct Supervision {
     pub following_error_limit: u32,
     /// Largest deviation from the scale in counts of the loop; 0 disables the check.
     pub deviation_limit: u32,
+    /// Ticks for which a larger deviation may last; 0: it acts at once.
+    pub deviation_ticks: u16,
     /// Consecutive ticks for which the command may be clamped; 0 disables the check.
     pub saturation_ticks: u16,
     /// Command in Q20.12 command units above which the encoder must count.
@@ -46,7 +48,7 @@ pub struct Supervision {
 
 impl Supervision {
     /// Every word with its name, in the order of the fields.
-    pub fn words(&self) -> [(&'static str, i64); 19] {
+    pub fn words(&self) -> [(&'static str, i64); 20] {
         [
             ("off_causes", self.off_causes.into()),
             ("brake_release_ticks", self.brake_release_ticks.into()),
@@ -57,6 +59,7 @@ impl Supervision {
             ("limits_after_homing", self.limits_after_homing.into()),
             ("following_error_limit", self.following_error_limit.into()),
             ("deviation_limit", self.deviation_limit.into()),
+            ("deviation_ticks", self.deviation_ticks.into()),
             ("saturation_ticks", self.saturation_ticks.into()),
             ("lost_command", self.lost_command.into()),
             ("lost_ticks", self.lost_ticks.into()),

@@ -6,6 +6,7 @@
 //! | `soft_limits_after_homing` | 1 bit | | | 0: they act at once |
 //! | `following_error` | u32 | 2^−16 counts | down, at least 1 | 0: not checked |
 //! | `deviation` | u32 | counts | down, at least 1 | 0: not checked |
+//! | `deviation_s` | u16 | ticks | down, at least 1 | 0: it acts at once |
 //! | `saturation_s`, `encoder_lost_s`, `watchdog_s` | u16 | ticks | down, at least 1 | 0: not checked |
 //! | `encoder_lost_command` | u32 | 2^−12 command units | down | 0.5 of full scale; 0 without `encoder_lost_s` |
 //! | `brake_release_s`, `brake_apply_s` | u16 | ticks | up | 0 |
@@ -95,6 +96,7 @@ pub fn supervision(
             ERROR_FRACTION,
         )?,
         deviation_limit: words.error_limit("axis.limits.deviation", limits.deviation, 0)?,
+        deviation_ticks: words.ticks_down("axis.limits.deviation_s", limits.deviation_s)?,
         saturation_ticks: words.ticks_down("axis.limits.saturation_s", limits.saturation_s)?,
         lost_command: words.lost_command()?,
         lost_ticks: words.ticks_down("axis.limits.encoder_lost_s", limits.encoder_lost_s)?,

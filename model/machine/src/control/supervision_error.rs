@@ -4,7 +4,8 @@ use crate::unit::AxisUnit;
 use posicast_shaper::unit::short;
 
 /// Keys with a further remedy besides another value: one for values that are too large, one for those that are too small.
-const OTHERWISE: [(&str, &str, &str); 9] = [
+const OTHERWISE: [(&str, &str, &str); 10] = [
+    ("axis.limits.deviation_s", "", "; 0 stops the axis at once"),
     ("axis.limits.saturation_s", "", "; 0 disables the check"),
     ("axis.limits.encoder_lost_s", "", "; 0 disables the check"),
     ("axis.limits.watchdog_s", "", "; 0 disables the watchdog"),

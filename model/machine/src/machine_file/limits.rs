@@ -80,6 +80,8 @@ pub struct LimitsSection {
     pub following_error: Option<f64>,
     /// Largest distance of the motor's position from the scale's, m; only with `[axis.scale]`.
     pub deviation: Option<f64>,
+    /// Longest time that the deviation may be larger, s; 0: it acts at once.
+    pub deviation_s: f64,
     /// Longest time that the command may be clamped, s; 0 disables the check.
     pub saturation_s: f64,
     /// Longest time that the encoder may stand still under a command, s; 0 disables the check.
@@ -116,6 +118,7 @@ impl Default for LimitsSection {
             stop_deceleration: None,
             following_error: None,
             deviation: None,
+            deviation_s: 0.0,
             saturation_s: 0.0,
             encoder_lost_s: 0.0,
             encoder_lost_command: DEFAULT_LOST_COMMAND,
@@ -180,6 +183,12 @@ pub(super) const KEYS: &[Key] = &[
         "Largest distance of the motor from the scale, in the axis's unit; needs [axis.scale].",
     )
     .rule("1 to 2,147,483,646 counts"),
+    Key::or_zero(
+        "deviation_s",
+        SECONDS,
+        "How long the deviation may be larger; needs `deviation`. 0: the axis stops at once.",
+    )
+    .rule("at most 65,535 ticks"),
     Key::or_zero(
         "saturation_s",
         SECONDS,
@@ -283,6 +292,7 @@ pub(super) fn read(
         stop_deceleration: quantity("stop_deceleration"),
         following_error: quantity("following_error"),
         deviation: quantity("deviation"),
+        deviation_s: seconds("deviation_s"),
         saturation_s: seconds("saturation_s"),
         encoder_lost_s: seconds("encoder_lost_s"),
         encoder_lost_command: table
@@ -326,6 +336,9 @@ fn check_needs(axis: &Table<'_, '_>, table: &Table<'_, '_>) {
         } else if key == "deviation" && axis.lacks("scale") {
             let allowed = "deviation on an axis with [axis.scale], from which the motor may deviate";
             need(table, key, "[axis.scale]", allowed.to_owned());
+        } else if key == "deviation_s" && !table.has("deviation") {
+            let allowed = "deviation_s with deviation, which it lets pass for a time";
+            need(table, key, "`deviation`", allowed.to_owned());
         } else if key == "soft_limits_after_homing" && !table.has("travel") {
             let allowed = "soft_limits_after_homing with travel, which are the soft limits";
             need(table, key, "`travel`", allowed.to_owned());
