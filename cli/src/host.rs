@@ -1,6 +1,7 @@
-//! `posicast host`: operates a stage through its serial line, its SPI lines, or a server in the network.
+//! `posicast host`: operates a stage, or looks at an inline shaper, through its serial line, its SPI lines, or a server in the network.
 
 mod actions;
+mod inline;
 mod text;
 mod way;
 
@@ -10,15 +11,18 @@ use posicast_flow::Failure;
 use posicast_flow::design::DesignReport;
 use posicast_flow::machine;
 use posicast_flow::moves::PerAxis;
-use posicast_host::{HostError, HostedStage, Line as AnyLine, LinkError, LinkOptions};
+use posicast_host::{HostError, HostedInline, HostedStage, Line as AnyLine, LinkError, LinkOptions};
 use posicast_machine::hardware::StageHardware;
 use posicast_machine::machine_file::Machine;
+use posicast_taps::TapTable;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+pub(crate) use self::inline::Document as InlineStatusDocument;
 pub(crate) use self::text::Document as StatusDocument;
 
-/// Operate a stage through its serial line, SPI or a network: show its state, move, record, load a shaper
+/// Operate a stage through its serial line, SPI or a network: show its state, move, record, load a shaper; of an inline shaper show the
+/// state, switch the shaping, load a shaper
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -26,11 +30,14 @@ Examples:
   posicast host /dev/ttyUSB0 move x=0.04,y=-0.02 --machine xy_stage/machine.toml
   posicast host /dev/ttyUSB0 trace x -o x.csv --shake 60 --machine xy_stage/machine.toml
   posicast host /dev/ttyUSB0 load x new.toml --machine xy_stage/machine.toml
+  posicast host /dev/ttyUSB0 bypass on --machine router/machine.toml
   posicast host spi:///dev/spidev0.0 status --machine xy_stage/machine.toml
   posicast host udp://192.0.2.10:4210 status --machine xy_stage/machine.toml
 
 Give the machine file from which the FPGA was built; for a serial line or SPI it has a table [link]. At a UDP address,
 posicast_serve must run, from linux/ of the C driver.
+
+An inline shaper has status, bypass, load and table: its controller moves the axes.
 
 Exit status: 1 the stage did not carry out the request, 2 bad input or another machine, 3 no port or no reply.")]
 pub(crate) struct Args {
@@ -43,7 +50,7 @@ pub(crate) struct Args {
 
 #[derive(clap::Subcommand)]
 enum Action {
-    /// Show states, causes and positions of all axes; writes nothing to the stage
+    /// Show states, causes and positions of all axes; of an inline shaper the counts of one clock. Changes nothing
     Status {
         #[command(flatten)]
         line: Line,
@@ -78,6 +85,30 @@ enum Action {
         #[command(flatten)]
         line: Line,
     },
+    /// Show the taps of an axis's shaper as the hardware has them
+    Table {
+        /// Name of the axis
+        axis: String,
+        /// Bank: 0 is the machine's, 1 and 2 are loaded ones [default: the one in use]
+        #[arg(long, value_name = "BANK", value_parser = clap::value_parser!(u32).range(0..=2))]
+        bank: Option<u32>,
+        #[command(flatten)]
+        line: Line,
+    },
+    /// End or begin the shaping of an inline shaper, to home and to probe; waits until all axes are settled
+    Bypass {
+        /// on: no shaping; off: shaping, unless the pin asks for none
+        switch: Switch,
+        #[command(flatten)]
+        line: Line,
+    },
+}
+
+/// Whether there is to be no shaping.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Switch {
+    On,
+    Off,
 }
 
 #[derive(clap::Args)]
@@ -134,7 +165,11 @@ struct Line {
 impl Action {
     fn line(&self) -> &Line {
         match self {
-            Self::Status { line, .. } | Self::Move { line, .. } | Self::Load { line, .. } => line,
+            Self::Status { line, .. }
+            | Self::Move { line, .. }
+            | Self::Load { line, .. }
+            | Self::Table { line, .. }
+            | Self::Bypass { line, .. } => line,
             Self::Trace(trace) => &trace.line,
         }
     }
@@ -153,6 +188,16 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         .stage()
         .map_err(|error| machine::of_hardware(&error, path))?;
     let way = Way::of((&args.port, line.baud), &machine, path)?;
+    let inline = report
+        .hardware
+        .inline()
+        .map_err(|error| machine::of_hardware(&error, path))?;
+    if let Some(component) = inline.and_then(|inline| inline.component.as_ref()) {
+        return inline::run(&args.action, &machine, || {
+            let link = way.open(options(line.timeout)).map_err(|error| failure(error.into()))?;
+            HostedInline::open(link, &machine, component).map_err(|error| not_opened(&way, error))
+        });
+    }
     let stage = stage.ok_or_else(|| {
         Failure::input(format!("{}: the machine has no stage", path.display()))
             .with_help("give every axis encoder, PWM, drive and controller")
@@ -172,7 +217,41 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             ..
         } => actions::move_axes(&machine, (distance, speed.as_ref()), [faults.clear_faults, *hold], open),
         Action::Trace(trace) => actions::trace(&machine, trace, open),
-        Action::Load { axis, from, .. } => actions::load(&machine, axis, from, open),
+        Action::Load { axis, from, .. } => {
+            let load = |index, table: &TapTable| Ok(open()?.load_table(index, table));
+            actions::load(&machine, axis, from, load)
+        }
+        Action::Table { axis, bank, .. } => {
+            let index = axis_of(&machine, axis, path)?;
+            let mut stage = open()?;
+            let active = stage.status().map_err(failure)?[index].table_bank;
+            let bank = bank.unwrap_or(active);
+            let taps = stage.read_table(index, bank).map_err(failure)?;
+            text::table(axis, (bank, active), &taps)
+        }
+        Action::Bypass { .. } => Err(Failure::input(format!(
+            "{}: a stage has no `bypass`, which belongs to an inline shaper",
+            path.display()
+        ))
+        .with_help(
+            "load the shaper `none` with `posicast host PORT load`, or give the machine file of an inline shaper",
+        )),
+    }
+}
+
+fn options(timeout_ms: u64) -> LinkOptions {
+    LinkOptions {
+        timeout: Duration::from_millis(timeout_ms),
+        ..LinkOptions::default()
+    }
+}
+
+fn not_opened(way: &Way<'_>, error: HostError) -> Failure {
+    match error {
+        HostError::Link(LinkError::NoReply { .. } | LinkError::Line(_)) => {
+            Failure::missing_tool(format!("{way}: {error}")).with_help(way.remedy())
+        }
+        error => failure(error),
     }
 }
 
@@ -182,17 +261,8 @@ fn open<'m>(
     machine: &'m Machine,
     stage: &'m StageHardware,
 ) -> Result<Port<'m>, Failure> {
-    let options = LinkOptions {
-        timeout: Duration::from_millis(timeout_ms),
-        ..LinkOptions::default()
-    };
-    let link = way.open(options).map_err(|error| failure(error.into()))?;
-    HostedStage::open(link, machine, stage).map_err(|error| match error {
-        HostError::Link(LinkError::NoReply { .. } | LinkError::Line(_)) => {
-            Failure::missing_tool(format!("{way}: {error}")).with_help(way.remedy())
-        }
-        error => failure(error),
-    })
+    let link = way.open(options(timeout_ms)).map_err(|error| failure(error.into()))?;
+    HostedStage::open(link, machine, stage).map_err(|error| not_opened(way, error))
 }
 
 /// Converts an error of a call into a failure.
@@ -206,7 +276,9 @@ fn failure(error: HostError) -> Failure {
             | LinkError::Line(_),
         ) => Failure::missing_tool(error),
         HostError::Fault { .. } => Failure::Check(format!("{error} (--clear-faults)")),
-        HostError::Late { .. } | HostError::Refused { .. } | HostError::Standstill => Failure::Check(error.to_string()),
+        HostError::Late { .. } | HostError::Refused { .. } | HostError::Standstill | HostError::Bypass { .. } => {
+            Failure::Check(error.to_string())
+        }
         _ => Failure::because(error),
     }
 }

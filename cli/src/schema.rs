@@ -63,8 +63,10 @@ enum Name {
     Bitstream,
     /// `identify --json`
     Identify,
-    /// `host status --json`
+    /// `host status --json` of a stage
     HostStatus,
+    /// `host status --json` of an inline shaper
+    HostInlineStatus,
     /// `reproduce --json`
     Reproduce,
     /// `reproduce --beyond --json`
@@ -90,6 +92,7 @@ impl Name {
             Self::Bitstream => json_schema::<bitstream::Document>(),
             Self::Identify => json_schema::<identify::Document>(),
             Self::HostStatus => json_schema::<host::StatusDocument>(),
+            Self::HostInlineStatus => json_schema::<host::InlineStatusDocument>(),
             Self::Reproduce => json_schema::<reproduce::Document<'_>>(),
             Self::Beyond => json_schema::<reproduce::BeyondDocument<'_>>(),
             Self::Doctor => json_schema::<doctor::Document<'_>>(),

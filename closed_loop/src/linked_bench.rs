@@ -8,6 +8,9 @@
 //! A byte takes the time that it has on the line, and so does every access; in between the model of the stage runs event by event. Bits
 //! and clocks of the bridge are not simulated: the lock step of `uart_bridge` and `linked_stage` compares these.
 //!
+//! [`InlineBench`](crate::inline_bench::InlineBench) takes the place of the stage with its machine where the line belongs to an inline
+//! shaper.
+//!
 //! A host in the same thread has the bench itself as its line; [`serve`] is for a host at a port.
 
 use std::collections::VecDeque;
@@ -27,10 +30,45 @@ const ACCESS_CLOCKS: u64 = 34;
 /// Time that passes at once while the line is silent, in s.
 const SILENT_S: f64 = 200e-6;
 
-/// A stage and its machine behind a serial line.
-pub struct LinkedBench {
-    /// The stage and its machine.
-    pub bench: StageBench,
+/// What is behind a line: registers, and time that passes.
+pub trait Registered {
+    /// Reads the word at this address; it takes a few clocks.
+    ///
+    /// # Errors
+    /// [`Error`] where the model stops.
+    fn read_at(&mut self, address: u32) -> Result<u32, Error>;
+
+    /// Writes the word at this address.
+    ///
+    /// # Errors
+    /// [`Error`] where the model stops.
+    fn write_at(&mut self, address: u32, data: u32) -> Result<(), Error>;
+
+    /// Lets time pass.
+    ///
+    /// # Errors
+    /// [`Error`] where the model stops.
+    fn clocks(&mut self, clocks: u64) -> Result<(), Error>;
+}
+
+impl Registered for StageBench {
+    fn read_at(&mut self, address: u32) -> Result<u32, Error> {
+        self.read_at(address)
+    }
+
+    fn write_at(&mut self, address: u32, data: u32) -> Result<(), Error> {
+        self.write_at(address, data)
+    }
+
+    fn clocks(&mut self, clocks: u64) -> Result<(), Error> {
+        self.clocks(clocks)
+    }
+}
+
+/// A stage and its machine, or an inline shaper and its controller, behind a serial line.
+pub struct LinkedBench<B = StageBench> {
+    /// What is behind the line.
+    pub bench: B,
     /// Words that were written, in order: address and word.
     pub writes: Vec<(u16, u32)>,
     bridge: LinkBridge,
@@ -46,13 +84,13 @@ pub struct LinkedBench {
 }
 
 /// The registers during a request.
-struct Registers<'a> {
-    bench: &'a mut StageBench,
+struct Registers<'a, B> {
+    bench: &'a mut B,
     writes: &'a mut Vec<(u16, u32)>,
     error: Option<Error>,
 }
 
-impl Registers<'_> {
+impl<B> Registers<'_, B> {
     fn keep<T: Default>(&mut self, result: Result<T, Error>) -> T {
         result.unwrap_or_else(|error| {
             self.error.get_or_insert(error);
@@ -61,7 +99,7 @@ impl Registers<'_> {
     }
 }
 
-impl Bus for Registers<'_> {
+impl<B: Registered> Bus for Registers<'_, B> {
     fn read(&mut self, address: u16) -> u32 {
         let word = self.bench.read_at(address.into());
         let word = word.and_then(|word| self.bench.clocks(ACCESS_CLOCKS).map(|()| word));
@@ -76,9 +114,9 @@ impl Bus for Registers<'_> {
     }
 }
 
-impl LinkedBench {
-    /// Puts a stage behind the line `link`, for registers with word addresses below `address_limit`.
-    pub fn new(bench: StageBench, link: &LinkSection, clock: &ClockSection, address_limit: u16) -> Self {
+impl<B: Registered> LinkedBench<B> {
+    /// Puts a bench behind the line `link`, for registers with word addresses below `address_limit`.
+    pub fn new(bench: B, link: &LinkSection, clock: &ClockSection, address_limit: u16) -> Self {
         Self {
             bench,
             writes: Vec::new(),
@@ -195,7 +233,7 @@ pub fn serve<E>(
 }
 
 /// A host in the same thread sends.
-impl Write for LinkedBench {
+impl<B: Registered> Write for LinkedBench<B> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         for byte in bytes {
             let reply = self.byte(*byte).map_err(io::Error::other)?;
@@ -210,7 +248,7 @@ impl Write for LinkedBench {
 }
 
 /// A host in the same thread reads; no time passes.
-impl Read for LinkedBench {
+impl<B> Read for LinkedBench<B> {
     fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
         if self.coming.is_empty() {
             Err(ErrorKind::TimedOut.into())

@@ -3,6 +3,7 @@
 
 mod error_table_loop;
 mod fault_campaign;
+mod inline;
 mod latency;
 mod moving_modes;
 mod stage;

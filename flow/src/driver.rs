@@ -1,7 +1,7 @@
 //! Files that accompany the Verilog in its folder: the C driver, documents of the registers, the FuseSoC core.
 
 use crate::failure::Failure;
-use crate::hardware::{COMPONENT_SUFFIX, Stage};
+use crate::hardware::{Built, COMPONENT_SUFFIX, Stage};
 use crate::verilog;
 use posicast_blocks::component::Component;
 use posicast_blocks::registers::RegisterMap;
@@ -16,14 +16,17 @@ use posicast_testbench::blocks::Block;
 use posicast_testbench::component::ComponentBlock;
 use posicast_testbench::linked_stage::LinkedStageBlock;
 
-/// Adds the whole driver if there is a stage, a header and documents for every component's registers, and the core.
+/// Adds the whole driver if there is a stage, that of an inline shaper with a line, a header and documents for every component's
+/// registers, and the core.
 pub(crate) fn add(
     package: &mut Package,
     machine: &Machine,
     modules: &[Module],
-    components: &[ComponentBlock],
-    (stage, link): (Option<&Stage>, Option<&LinkedStageBlock>),
+    built: &Built<'_>,
 ) -> Result<(), Failure> {
+    let (components, stage, link) = (&built.components, built.stage.as_ref(), built.link.as_ref());
+    let inline = built.inline_registers.as_ref();
+    let axes: Vec<&str> = machine.axes.iter().map(|axis| axis.name.as_str()).collect();
     let mut add = |path: &str, text: &str| package.add(path, text.as_bytes()).map_err(Failure::because);
     for block in components {
         let header = driver::component_header(&block.top(), block.component().map());
@@ -32,12 +35,17 @@ pub(crate) fn add(
     for file in stage.into_iter().flat_map(|stage| stage_driver_files(machine, stage)) {
         add(&file.path, &file.text)?;
     }
-    for (name, tops, map) in documents(&machine.name, components, stage) {
+    if let Some(block) = inline {
+        for file in driver::inline_files(&machine.name, &axes, block.component().map()) {
+            add(&file.path, &file.text)?;
+        }
+    }
+    for (name, tops, map) in documents(&machine.name, components, stage.map(|stage| &stage.block).or(inline)) {
         for (path, text) in register_documents::files(&name, &tops, map) {
             add(&path, &text)?;
         }
     }
-    for (path, text) in core_files(machine, modules, stage, link) {
+    for (path, text) in core_files(machine, modules, stage.map(|stage| &stage.block).or(inline), link) {
         add(&path, &text)?;
     }
     Ok(())
@@ -48,7 +56,7 @@ pub(crate) fn add(
 fn documents<'a>(
     machine: &str,
     components: &'a [ComponentBlock],
-    stage: Option<&'a Stage>,
+    whole: Option<&'a ComponentBlock>,
 ) -> Vec<(String, Vec<String>, &'a RegisterMap)> {
     let mut documents: Vec<(String, Vec<String>, &RegisterMap)> = Vec::new();
     for block in components {
@@ -64,22 +72,21 @@ fn documents<'a>(
             documents[at].0 = format!("{machine}_{block}{COMPONENT_SUFFIX}");
         }
     }
-    let stage = stage.map(|stage| &stage.block);
-    documents.extend(stage.map(|block| (block.top(), vec![block.top()], block.component().map())));
+    documents.extend(whole.map(|block| (block.top(), vec![block.top()], block.component().map())));
     documents
 }
 
 fn core_files(
     machine: &Machine,
     modules: &[Module],
-    stage: Option<&Stage>,
+    whole: Option<&ComponentBlock>,
     link: Option<&LinkedStageBlock>,
 ) -> Vec<(String, String)> {
     let files: Vec<String> = modules.iter().map(verilog::path).collect();
-    let component: Option<&Component> = stage.map(|stage| stage.block.component());
+    let component: Option<&Component> = whole.map(ComponentBlock::component);
     core_file::files(&Core {
         machine: &machine.name,
-        top: &stage.map_or_else(|| machine.name.clone(), |stage| stage.block.top()),
+        top: &whole.map_or_else(|| machine.name.clone(), Block::top),
         link: link.map(Block::top).as_deref(),
         files: &files,
         bus: component.map(|component| (component.map(), component.composition().ports())),

@@ -5,7 +5,7 @@ use crate::design::DesignReport;
 use crate::driver;
 use crate::failure::Failure;
 use crate::hal;
-use crate::hardware::{Built, INLINE_SUFFIX, LINK_SUFFIX, STAGE_SUFFIX};
+use crate::hardware::{Built, LINK_SUFFIX, STAGE_SUFFIX};
 use crate::kit;
 use crate::machine::{self, MachineFile};
 use crate::observer::Observer;
@@ -80,7 +80,7 @@ pub(crate) fn add(
         inline,
         observer,
     )?;
-    driver::add(package, machine, &modules, &built.components, of_stage)?;
+    driver::add(package, machine, &modules, built)?;
     Ok(sources)
 }
 
@@ -113,10 +113,10 @@ impl Document {
             top: std::iter::once(name.clone())
                 .chain(built.stage.as_ref().map(|_| format!("{name}{STAGE_SUFFIX}")))
                 .chain(built.link.as_ref().map(|_| format!("{name}{LINK_SUFFIX}")))
-                .chain(built.inline.as_ref().map(|_| format!("{name}{INLINE_SUFFIX}")))
+                .chain(built.inline_top())
                 .collect(),
             files: files.iter().map(relative).collect(),
-            has_inline: built.inline.is_some(),
+            has_inline: built.inline_top().is_some(),
             line: built.link.as_ref().map(|link| link.config().line()),
         }
     }

@@ -10,7 +10,7 @@ use posicast_blocks::linked_stage::address_limit;
 use posicast_blocks::stage::StageConfig;
 use posicast_hdl::emit::{Module, add};
 use posicast_hdl::machine::{AxisShaper, emit_machine};
-use posicast_machine::hardware::{Hardware, HardwareError, InlineFigures, MachineStage, NAME_KEY};
+use posicast_machine::hardware::{Hardware, HardwareError, InlineFigures, InlineHardware, MachineStage, NAME_KEY};
 use posicast_machine::machine_file::{LinkLine, LinkSection, Machine};
 use posicast_synth::sopc::{InlineUnit, InlineUnitAxis};
 use posicast_testbench::blocks::Block;
@@ -38,10 +38,12 @@ pub(crate) struct Built<'a> {
     pub(crate) components: Vec<ComponentBlock>,
     /// All axes behind one agent, if every loop is complete.
     pub(crate) stage: Option<Stage>,
-    /// The stage with its line to a host, if the machine file has one. Its top module is `<machine>_link`.
+    /// The stage or the inline shaper with its line to a host, if the machine file has one. Its top module is `<machine>_link`.
     pub(crate) link: Option<LinkedStageBlock>,
-    /// The inline shaper, if the commands come as step pulses. Its top module is `<machine>_inline`.
+    /// The inline shaper, if the commands come as step pulses and there is no line to a host. Its top module is `<machine>_inline`.
     pub(crate) inline: Option<InlineShaperBlock>,
+    /// The inline shaper behind registers, if there is a line to a host. Its top module is `<machine>_inline`.
+    pub(crate) inline_registers: Option<ComponentBlock>,
     /// The figures of its axes.
     inline_figures: Vec<InlineFigures>,
 }
@@ -91,19 +93,23 @@ impl<'a> Built<'a> {
         });
         let inline = hardware.inline().map_err(refused)?;
         let inline_figures = inline.map_or_else(Vec::new, |inline| inline.axes.clone());
-        let inline = inline.map(|inline| {
-            let top = format!("{}{INLINE_SUFFIX}", machine.name);
-            InlineShaperBlock::new(inline.shaper.clone(), &top, &machine.name)
+        let inline_top = format!("{}{INLINE_SUFFIX}", machine.name);
+        let inline_registers = inline.and_then(|inline| inline.component.clone()).map(|component| {
+            let axes: Vec<&str> = machine.axes.iter().map(|axis| axis.name.as_str()).collect();
+            ComponentBlock::new(component, &inline_top, &axes.join(", ")).with_prefix(&machine.name)
         });
-        let link = match (&machine.link, &stage) {
-            (None, _) => None,
-            (Some(link), Some(stage)) => Some(linked(machine, link, stage, path)?),
-            (Some(link), None) => {
+        let link = match (&machine.link, &stage, inline) {
+            (None, ..) => None,
+            (Some(link), Some(stage), _) => Some(linked(machine, link, stage, path)?),
+            (Some(link), None, Some(inline)) => Some(linked_inline(machine, link, (inline, &inline_top), path)?),
+            (Some(link), None, None) => {
                 let reason =
                     "a line needs the stage, but no stage is built; remove [link], or change what the warning names";
                 return Err(at_key(path, 0, link_key(link), reason));
             }
         };
+        let inline = inline.filter(|inline| inline.component.is_none());
+        let inline = inline.map(|inline| InlineShaperBlock::new(inline.shaper.clone(), &inline_top, &machine.name));
         Ok(Self {
             machine,
             shapers,
@@ -111,8 +117,15 @@ impl<'a> Built<'a> {
             stage,
             link,
             inline,
+            inline_registers,
             inline_figures,
         })
+    }
+
+    /// Name of the inline shaper's top module, if there is one.
+    pub(crate) fn inline_top(&self) -> Option<String> {
+        let with_registers = self.inline_registers.as_ref().map(Block::top);
+        self.inline.as_ref().map(Block::top).or(with_registers)
     }
 
     /// The inline shaper as the README tells its user.
@@ -125,8 +138,8 @@ impl<'a> Built<'a> {
             unshaped_s: figures.unshaped_s,
             settle_s: figures.settle_s,
         });
-        self.inline.as_ref().map(|inline| InlineUnit {
-            top: inline.top(),
+        self.inline_top().map(|top| InlineUnit {
+            top,
             axes: axes.collect(),
         })
     }
@@ -141,7 +154,9 @@ impl<'a> Built<'a> {
         if let Some(stage) = &self.stage {
             add(&mut modules, stage.modules(path)?).map_err(Failure::because)?;
         }
-        if let Some(inline) = &self.inline {
+        let without = self.inline.as_ref().map(|inline| inline as &dyn Block);
+        let with = self.inline_registers.as_ref().map(|inline| inline as &dyn Block);
+        if let Some(inline) = without.or(with) {
             let of_inline = inline
                 .modules()
                 .map_err(|error| at_key(path, 0, NAME_KEY, format_args!("{error}; rename an axis")))?;
@@ -160,6 +175,22 @@ fn link_key(link: &LinkSection) -> &'static str {
         LinkLine::Uart { .. } => "link.baud",
         LinkLine::Spi { .. } => "link.sck_hz",
     }
+}
+
+/// The inline shaper of a machine with its line; its module is called `inline_top`.
+fn linked_inline(
+    machine: &Machine,
+    link: &LinkSection,
+    (inline, inline_top): (&InlineHardware, &str),
+    path: &Path,
+) -> Result<LinkedStageBlock, Failure> {
+    let words = inline.component.as_ref().map_or(0, address_limit);
+    let config = link.bridge(&machine.clock, words);
+    let config = config.map_err(|error| at_key(path, 0, link_key(link), error))?;
+    let top = format!("{}{LINK_SUFFIX}", machine.name);
+    let line = (config, machine.clock.frequency_hz);
+    let shaper = (inline.shaper.config(), Some(link.machine_crc));
+    LinkedStageBlock::of_inline(shaper, line, [&top, inline_top, &machine.name]).map_err(Failure::because)
 }
 
 /// The stage of a machine with its line.

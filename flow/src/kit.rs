@@ -21,6 +21,10 @@ pub(crate) fn files(machine: &Machine, modules: &[Module], built: &Built<'_>) ->
             None => BuiltBlocks::Stage,
         },
         (None, _) if built.inline.is_some() => BuiltBlocks::Inline,
+        (None, _) if built.inline_registers.is_some() => match built.link.as_ref().map(|link| link.config()) {
+            Some(BridgeConfig::Spi(_)) => BuiltBlocks::SpiLinkedInline,
+            _ => BuiltBlocks::LinkedInline,
+        },
         (None, false) => BuiltBlocks::Components,
         (None, true) => BuiltBlocks::Shapers,
     };

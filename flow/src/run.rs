@@ -89,6 +89,7 @@ pub fn run(options: &Options, observer: &dyn Observer) -> Result<Outcome<Documen
     let mut checks = Vec::from_iter(checks::lint(plan.simulator, &rtl.sources, &rtl.tops())?);
     checks.push(checks::moves(machine, &axes));
     checks.extend(checks::all(plan.simulator, machine, &design.design, &lockstep, &waves));
+    checks.extend(checks::inline(&built));
     checks.extend(checks::link(built.link.as_ref()));
     checks.extend(estimate.as_ref().and_then(|e| checks::fits(machine, e)));
     checks.extend(closed_loop.iter().flat_map(ClosedLoop::checks));
@@ -194,14 +195,18 @@ struct Rtl<'a> {
 }
 
 impl Rtl<'_> {
-    /// The shapers, the components, the stage and its line.
+    /// The shapers, the components, the stage or the inline shaper, and its line.
     fn tops(&self) -> Vec<&dyn Block> {
         let stage = self.built.stage.as_ref().map(|stage| &stage.block);
         let components = self.built.components.iter().chain(stage);
         let components = components.map(|component| component as &dyn Block);
         let link = self.built.link.as_ref().map(|link| link as &dyn Block);
+        let inline = self.built.inline.as_ref().map(|inline| inline as &dyn Block);
+        let with_registers = self.built.inline_registers.as_ref();
         std::iter::once(self.top as &dyn Block)
             .chain(components)
+            .chain(inline)
+            .chain(with_registers.map(|inline| inline as &dyn Block))
             .chain(link)
             .collect()
     }

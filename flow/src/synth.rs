@@ -8,7 +8,7 @@ pub use self::clock::{ClockEstimate, ClockEstimates};
 use crate::Outcome;
 use crate::design::DesignReport;
 use crate::failure::Failure;
-use crate::hardware::{Built, COMPONENT_SUFFIX, LINK_SUFFIX, STAGE_SUFFIX};
+use crate::hardware::{Built, COMPONENT_SUFFIX, INLINE_SUFFIX, LINK_SUFFIX, STAGE_SUFFIX};
 use crate::observer::Observer;
 use crate::{machine, verilog};
 use posicast_machine::machine_file::Machine;
@@ -107,7 +107,7 @@ pub struct Document {
     /// The top module, block by block.
     #[serde(flatten)]
     pub estimate: Estimate,
-    /// The stage, alone and with its line to a host, and the blocks that stand alone.
+    /// The stage or the inline shaper, alone and with its line to a host, and the blocks that stand alone.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub components: Vec<BlockEstimate>,
     /// The tops whose clock was asked for.
@@ -115,9 +115,10 @@ pub struct Document {
     pub clocks: Option<ClockEstimates>,
 }
 
-/// The top modules of the components among these files: the stage, alone and with its line to a host, and the blocks that stand alone.
+/// The top modules of the components among these files: the stage or the inline shaper, alone and with its line to a host, and the blocks
+/// that stand alone.
 fn components(files: &[PathBuf], machine: &str) -> Vec<String> {
-    let stages = [STAGE_SUFFIX, LINK_SUFFIX].map(|suffix| format!("{machine}{suffix}"));
+    let stages = [STAGE_SUFFIX, INLINE_SUFFIX, LINK_SUFFIX].map(|suffix| format!("{machine}{suffix}"));
     let stems = files.iter().filter_map(|file| file.file_stem()?.to_str());
     let mut names: Vec<String> = stems
         .filter(|name| name.ends_with(COMPONENT_SUFFIX) || stages.iter().any(|stage| name == stage))

@@ -174,6 +174,11 @@ impl Job {
             Some(_) => blocks::of_components(built.components)?,
             None => blocks::others(&report, &built.shapers, built.components, &path)?,
         };
+        let (of_stage, of_inline) = if built.stage.is_some() {
+            (built.link, None)
+        } else {
+            (None, built.link)
+        };
         if let Some(stage) = built.stage {
             let block = StageBlock::new(&stage.of_machine.config, &stage.block.top())
                 .map_err(Failure::because)?
@@ -185,7 +190,7 @@ impl Job {
             let short = short.map(|short| short.with_prefix(&machine.name));
             others.push(Box::new(block));
             others.extend(short.map(|block| Box::new(block) as Box<dyn Block>));
-            if let Some(link) = built.link {
+            if let Some(link) = of_stage {
                 if folder.is_some() {
                     others.push(link.bridge());
                 }
@@ -197,6 +202,12 @@ impl Job {
         if let Some(inline) = built.inline {
             others.extend(inline.inner().map_err(bench::failure)?);
             others.push(Box::new(inline));
+        } else if let Some(link) = of_inline {
+            others.extend(link.inner().map_err(bench::failure)?);
+            if folder.is_some() {
+                others.push(link.bridge());
+            }
+            others.push(Box::new(link));
         }
         let folder = folder.map(|contents| contents.rtl);
         if let Some(files) = &folder {

@@ -10,6 +10,7 @@ use crate::{
     setting_banks, shaper, sliding_mode, step_generator, time_base, trace,
 };
 use posicast_blocks::component::{Component, ComponentPart, JoinedBlocks};
+use posicast_blocks::inline_shaper::INLINE_SHAPER;
 
 /// All Verilog modules of a component, sub-modules first, the top last. The top is called `name`. The names of modules
 /// whose contents depend on the machine begin with `prefix`: for a component the names of machine and axis; for a
@@ -24,7 +25,11 @@ pub fn emit(component: &Component, name: &str, prefix: &str) -> Result<Vec<Modul
         ports: Vec::new(),
         parameters: registers::parameters(map),
     };
-    joined(component.whole(), name, prefix, &header, Of::Stage)
+    let of = match component.name() {
+        INLINE_SHAPER => Of::InlineShaper,
+        _ => Of::Stage,
+    };
+    joined(component.whole(), name, prefix, &header, of)
 }
 
 /// What the axes are a part of.
@@ -84,7 +89,7 @@ fn block(block: &ComponentPart, top: &str, prefix: &str, of: Of) -> Result<Vec<M
         ComponentPart::Schedule(config) => schedule::emit(config, prefix),
         ComponentPart::Group(axes) => group::emit(*axes, prefix),
         ComponentPart::InlineAxis(config) => inline_axis::emit(config, prefix),
-        ComponentPart::InlineGroup(axes) => inline_group::emit(*axes, prefix),
+        ComponentPart::InlineGroup(config) => inline_group::emit(*config, prefix),
         ComponentPart::Joined(whole) => {
             let name = whole.name();
             let header = Header {

@@ -5,12 +5,12 @@
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::prelude::*;
 use crate::simulation::{Pins, Simulated, SimulationError};
-use posicast_blocks::inline_group::{PORTS, ports};
+use posicast_blocks::inline_group::{InlineGroupConfig, PORTS};
 use posicast_blocks::{ClockedBlock, port_notes};
 
 kernel! {
-    /// Sizes: N axes.
-    struct InlineGroup<const N: usize>;
+    /// Sizes: N axes, R requests of registers, 0 or 1.
+    struct InlineGroup<const N: usize, const R: usize>;
     ports posicast_blocks::inline_group_ports;
 
     parts {
@@ -26,7 +26,7 @@ kernel! {
     wires { all_settled: Bit, any_fault: Bit }
 }
 
-impl<const N: usize> Logic for InlineGroup<N> {
+impl<const N: usize, const R: usize> Logic for InlineGroup<N, R> {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module inline_group");
@@ -66,6 +66,11 @@ impl<const N: usize> Logic for InlineGroup<N> {
         comment!("Shaped and unshaped positions are equal here");
         if self.tick.val() & (self.all_settled.val() | !self.run_q.q.val()) {
             self.bypassed_q.d.next = self.bypass_line.level.val();
+            for i in 0..R {
+                if self.bypass_request[i].val() {
+                    self.bypassed_q.d.next = true;
+                }
+            }
         }
 
         comment!("The drives, without a clock");
@@ -81,39 +86,44 @@ impl<const N: usize> Logic for InlineGroup<N> {
     }
 }
 
-fn block(axes: usize) -> Box<dyn Pins> {
-    match axes {
-        0 | 1 => Box::new(InlineGroup::<1>::default()),
-        2 => Box::new(InlineGroup::<2>::default()),
-        3 => Box::new(InlineGroup::<3>::default()),
-        _ => Box::new(InlineGroup::<4>::default()),
+fn block(config: InlineGroupConfig) -> Box<dyn Pins> {
+    match (config.axes, config.with_registers) {
+        (0 | 1, false) => Box::new(InlineGroup::<1, 0>::default()),
+        (2, false) => Box::new(InlineGroup::<2, 0>::default()),
+        (3, false) => Box::new(InlineGroup::<3, 0>::default()),
+        (_, false) => Box::new(InlineGroup::<4, 0>::default()),
+        (0 | 1, true) => Box::new(InlineGroup::<1, 1>::default()),
+        (2, true) => Box::new(InlineGroup::<2, 1>::default()),
+        (3, true) => Box::new(InlineGroup::<3, 1>::default()),
+        (_, true) => Box::new(InlineGroup::<4, 1>::default()),
     }
 }
 
-/// The group of this many axes, 1 to 4, in RustHDL's own simulator.
+/// The group in RustHDL's own simulator.
 ///
 /// # Errors
 /// [`SimulationError`] where RustHDL finds an error in the block.
-pub fn simulate(axes: usize) -> Result<Box<dyn ClockedBlock>, SimulationError> {
-    Ok(Box::new(Simulated::new("inline_group", block(axes), ports(axes))?))
+pub fn simulate(config: InlineGroupConfig) -> Result<Box<dyn ClockedBlock>, SimulationError> {
+    Ok(Box::new(Simulated::new("inline_group", block(config), config.ports())?))
 }
 
 /// Name of the last module that [`emit()`] writes.
-pub fn name(axes: usize, prefix: &str) -> String {
-    emit::shared_name(prefix, &base_name(axes))
+pub fn name(config: InlineGroupConfig, prefix: &str) -> String {
+    emit::shared_name(prefix, &base_name(config))
 }
 
-fn base_name(axes: usize) -> String {
-    format!("inline_group_{axes}")
+fn base_name(config: InlineGroupConfig) -> String {
+    let registers = if config.with_registers { "_registers" } else { "" };
+    format!("inline_group_{}{registers}", config.axes)
 }
 
-/// Verilog of the group of this many axes; [`name`] gives its name.
+/// Verilog of the group; [`name`] gives its name.
 ///
 /// # Errors
 /// [`EmitError`] where `prefix` is not a valid Verilog name.
-pub fn emit(axes: usize, prefix: &str) -> Result<Vec<Module>, EmitError> {
+pub fn emit(config: InlineGroupConfig, prefix: &str) -> Result<Vec<Module>, EmitError> {
     let options = EmitOptions {
-        top: base_name(axes),
+        top: base_name(config),
         prefix: prefix.to_owned(),
         header: Header {
             about: "Enable, emergency stop, bypass and the clearing of faults, for all axes of the inline shaper."
@@ -121,10 +131,10 @@ pub fn emit(axes: usize, prefix: &str) -> Result<Vec<Module>, EmitError> {
             ports: port_notes(PORTS),
             parameters: vec![Parameter {
                 name: "axes".to_owned(),
-                value: axes.to_string(),
+                value: config.axes.to_string(),
                 meaning: "axes of the inline shaper".to_owned(),
             }],
         },
     };
-    emit::emit(block(axes).as_ref(), &options)
+    emit::emit(block(config).as_ref(), &options)
 }

@@ -1,4 +1,4 @@
-//! The stage with its bridge in Verilog: a module that connects the two.
+//! The stage, or the inline shaper, with its bridge in Verilog: a module that connects the two.
 //!
 //! The reference is `posicast_blocks::linked_stage`. The module is written as text, not as a composition, because the
 //! two buses have addresses of different widths.
@@ -7,6 +7,7 @@ use crate::emit::print::{self, Lines};
 use crate::emit::{EmitError, Header, Module, Parameter, Type, add};
 use crate::{component, spi_bridge, uart_bridge};
 use posicast_blocks::component::Component;
+use posicast_blocks::inline_shaper::INLINE_SHAPER;
 use posicast_blocks::linked_stage::{BridgeConfig, ports};
 use posicast_blocks::{Direction, Port};
 
@@ -31,7 +32,7 @@ pub fn emit(
         name: name.to_owned(),
         text: print::file(
             name,
-            &header(name, config),
+            &header(name, what(stage), config),
             &body(stage, config, stage_name, &bridge_name),
         ),
         ports: ports(stage, config),
@@ -53,25 +54,33 @@ pub fn emit_bridge(config: &BridgeConfig, prefix: &str) -> Result<Vec<Module>, E
     }
 }
 
-fn header(name: &str, config: &BridgeConfig) -> String {
+/// The component in words.
+fn what(component: &Component) -> &'static str {
+    match component.name() {
+        INLINE_SHAPER => "inline shaper",
+        _ => "stage",
+    }
+}
+
+fn header(name: &str, what: &str, config: &BridgeConfig) -> String {
     let parameter = |name: &str, value: String, meaning: &str| Parameter {
         name: name.to_owned(),
         value,
         meaning: meaning.to_owned(),
     };
     let about = match config {
-        BridgeConfig::Uart(_) => {
-            "The stage with its serial line: a host reads and writes the registers through uart_rx and uart_tx.\n\
+        BridgeConfig::Uart(_) => format!(
+            "The {what} with its serial line: a host reads and writes the registers through uart_rx and uart_tx.\n\
              See docs/uart_bridge.md."
-        }
-        BridgeConfig::Spi(_) => {
-            "The stage with its SPI lines: a host reads and writes the registers through spi_sck, spi_cs_n, spi_mosi and spi_miso.\n\
+        ),
+        BridgeConfig::Spi(_) => format!(
+            "The {what} with its SPI lines: a host reads and writes the registers through spi_sck, spi_cs_n, spi_mosi and spi_miso.\n\
              See docs/spi_bridge.md."
-        }
+        ),
     };
     let (speed, value, meaning) = config.speed();
     let header = Header {
-        about: about.to_owned(),
+        about,
         ports: Vec::new(),
         parameters: vec![
             parameter(speed, value.to_string(), meaning),
@@ -140,7 +149,7 @@ fn body(stage: &Component, config: &BridgeConfig, stage_name: &str, bridge_name:
             (port.name.clone(), net)
         });
         let pins: Vec<_> = std::iter::once(pin("clk", "clk")).chain(pins).collect();
-        print::instance(lines, stage_name, "u_stage", &pins);
+        print::instance(lines, stage_name, &format!("u_{}", stage.name()), &pins);
         lines.line("");
         lines.line("// No address beyond address_limit comes out of the bridge.");
         lines.line(&format!(

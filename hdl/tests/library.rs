@@ -7,6 +7,7 @@ use posicast_blocks::cascade::CascadeConfig;
 use posicast_blocks::component::Component;
 use posicast_blocks::divider::DividerConfig;
 use posicast_blocks::inline_axis::{InlineAxisConfig, InlineLinesActiveLow};
+use posicast_blocks::inline_group::InlineGroupConfig;
 use posicast_blocks::pwm::{ActiveLow, BridgeMode, PwmConfig};
 use posicast_blocks::schedule::ScheduleConfig;
 use posicast_blocks::shaper::{ShaperConfig, ShaperMotion};
@@ -142,7 +143,14 @@ fn machine(prefix: &str, chance: &mut Chance) -> Vec<Vec<Module>> {
         trace::emit(&trace, prefix),
         cascade::emit(&cascade, prefix),
         group::emit(axes, prefix),
-        inline_group::emit(axes, prefix),
+        inline_group::emit(InlineGroupConfig::without_registers(axes), prefix),
+        inline_group::emit(
+            InlineGroupConfig {
+                axes,
+                with_registers: true,
+            },
+            prefix,
+        ),
         inline_axis::emit(&inline_axis_config(chance), prefix),
         divider_share::emit(axes, prefix),
         sample_select::emit(word_bits, channels, prefix),

@@ -15,10 +15,19 @@ pub enum HostError {
         /// Word 0.
         found: u32,
     },
+    /// There are registers, but they are not those of an inline shaper.
+    #[error(
+        "word 0 reads {found:#010x}, but an inline shaper has {:#010x} (INLN): something else is at this port",
+        u32::from_le_bytes(*b"INLN")
+    )]
+    NoInlineShaper {
+        /// Word 0.
+        found: u32,
+    },
     /// The registers have another version.
     #[error(
-        "the stage has version {}.{} of the registers, and this posicast needs {}.{}: use the posicast that generated the stage, or \
-         generate the stage anew", .found >> 16, .found & 0xffff, .expected >> 16, .expected & 0xffff
+        "the hardware has version {}.{} of the registers, and this posicast needs {}.{}: use the posicast that generated it, or \
+         generate it anew", .found >> 16, .found & 0xffff, .expected >> 16, .expected & 0xffff
     )]
     Version {
         /// Version of the stage.
@@ -28,8 +37,8 @@ pub enum HostError {
     },
     /// The stage was made from another machine file.
     #[error(
-        "the stage was made from a machine file with the checksum {found:08x}, and this one has {expected:08x}: name the machine.toml of \
-         the folder from which the FPGA was built, or generate and build the stage anew (every change of the file changes its checksum)"
+        "the hardware was made from a machine file with the checksum {found:08x}, and this one has {expected:08x}: name the machine.toml of \
+         the folder from which the FPGA was built, or generate and build it anew (every change of the file changes its checksum)"
     )]
     Machine {
         /// Checksum in the stage.
@@ -39,8 +48,8 @@ pub enum HostError {
     },
     /// A constant of the build differs.
     #[error(
-        "{register} of the stage is {found}, but the machine file gives {expected}: use the posicast that generated the stage, or \
-         generate the stage anew"
+        "{register} of the hardware is {found}, but the machine file gives {expected}: use the posicast that generated it, or \
+         generate it anew"
     )]
     Constant {
         /// Name of the register.
@@ -75,6 +84,14 @@ pub enum HostError {
         wanted: &'static str,
         /// Its state.
         state: &'static str,
+    },
+    /// The shaping of an inline shaper did not end or begin in time.
+    #[error("the shaping did not {wanted} in time, because an axis is not settled; the request stays: {remedy}")]
+    Bypass {
+        /// The awaited change.
+        wanted: &'static str,
+        /// What to do.
+        remedy: &'static str,
     },
     /// Time stands still in the stage.
     #[error("the registers answer, but their time stands still: does the stage have a clock, or is it in reset?")]

@@ -25,13 +25,16 @@
 //! | [`HostedStage::switch_on`], [`HostedStage::switch_off`] | outputs on and off |
 //! | [`HostedStage::move_axes`] | a jerk-limited move of several axes that start together |
 //! | [`HostedStage::trace`] | signals of an axis, tick by tick |
-//! | [`HostedStage::load_table`] | another tap table, while the axis stands or moves |
+//! | [`HostedStage::load_table`], [`HostedStage::read_table`] | another tap table, while the axis stands or moves; the table in a bank |
+//!
+//! [`HostedInline`] is the inline shaper of a machine file: status and counts, no shaping on request, tables.
 //!
 //! Calls that wait kick the watchdogs of all axes. If the host stops or the link fails, the watchdog stops the machine (`watchdog_s` of the
 //! machine file).
 
 mod error;
 mod host_error;
+mod inline;
 mod link;
 mod moves;
 mod spi;
@@ -44,6 +47,7 @@ mod udp;
 
 pub use error::LinkError;
 pub use host_error::HostError;
+pub use inline::{HostedInline, InlineAxisStatus, InlineStatus};
 pub use link::{Line, Link, LinkOptions, LinkStatistics};
 pub use moves::HostMove;
 pub use serialport::SerialPort;

@@ -3,6 +3,7 @@
 use std::io::{Read, Write};
 
 use posicast_blocks::axis::{Cause, KICK, SupervisorState};
+use posicast_blocks::inline_shaper::INLINE_SHAPER;
 use posicast_blocks::registers::{Access, Field, Register, RegisterMap};
 use posicast_machine::hardware::StageHardware;
 use posicast_machine::machine_file::{AxisSection, Machine};
@@ -74,11 +75,12 @@ impl<'m, L: Read + Write> HostedStage<'m, L> {
     /// [`HostError`] if there is no stage, or one with another version of the registers or of another machine, with the values found and
     /// expected.
     pub fn open(link: Link<L>, machine: &'m Machine, stage: &'m StageHardware) -> Result<Self, HostError> {
-        let mut opened = Self {
-            link,
-            machine,
-            map: stage.component.map(),
-        };
+        Self::with_map(link, machine, stage.component.map())
+    }
+
+    /// The hardware with these registers, which also an inline shaper has.
+    pub(crate) fn with_map(link: Link<L>, machine: &'m Machine, map: &'m RegisterMap) -> Result<Self, HostError> {
+        let mut opened = Self { link, machine, map };
         opened.check()?;
         Ok(opened)
     }
@@ -98,7 +100,10 @@ impl<'m, L: Read + Write> HostedStage<'m, L> {
         if let Some((found, expected)) = pairs("magic")
             && found != expected
         {
-            return Err(HostError::NoStage { found });
+            return Err(match map.name() {
+                INLINE_SHAPER => HostError::NoInlineShaper { found },
+                _ => HostError::NoStage { found },
+            });
         }
         if let Some((found, expected)) = pairs("version")
             // A larger minor version has registers that this one does not use.
@@ -238,15 +243,20 @@ impl<'m, L: Read + Write> HostedStage<'m, L> {
         Ok(all)
     }
 
-    /// Kicks the watchdogs of all axes, to show that this host is alive.
+    /// Kicks the watchdogs of all axes that have one, to show that this host is alive.
     ///
     /// # Errors
     /// [`HostError`]
     pub fn kick(&mut self) -> Result<(), HostError> {
-        let words: Vec<(String, u32)> = (0..self.machine.axes.len())
-            .map(|axis| (self.of(axis, "kick"), KICK))
-            .collect();
+        let kicks = (0..self.machine.axes.len()).map(|axis| (self.of(axis, "kick"), KICK));
+        let words: Vec<(String, u32)> = kicks.filter(|(name, _)| self.map.register(name).is_some()).collect();
         self.write(&words)
+    }
+
+    /// The bank that an axis's shaper uses.
+    pub(crate) fn table_bank(&mut self, axis: usize) -> Result<u32, HostError> {
+        let status = self.read_one(axis, "status")?;
+        Ok(self.field(axis, "status", "table_bank")?.of(status))
     }
 
     fn time(&mut self) -> Result<[u32; 2], HostError> {

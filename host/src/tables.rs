@@ -15,7 +15,7 @@ impl<L: Read + Write> HostedStage<'_, L> {
     /// [`HostError::Table`] for a table that does not fit the hardware or that differs when it is read back; there is no handover then.
     pub fn load_table(&mut self, axis: usize, table: &TapTable) -> Result<u32, HostError> {
         self.table_fits(axis, table)?;
-        let active = self.status()?[axis].table_bank;
+        let active = self.settled_bank(axis, table.longest_delay_samples())?;
         let bank = if active == 1 { 2 } else { 1 };
         let taps = table.taps();
         let mut words = Vec::new();
@@ -36,8 +36,10 @@ impl<L: Read + Write> HostedStage<'_, L> {
             }
         }
         let longest = table.longest_delay_samples();
-        let settle = self.field(axis, "settle", "settle_ticks")?;
-        if longest > settle.of(self.read_one(axis, "settle")?) {
+        // An inline shaper waits for the longest delay of any table.
+        if let Ok(settle) = self.field(axis, "settle", "settle_ticks")
+            && longest > settle.of(self.read_one(axis, "settle")?)
+        {
             self.write_one(axis, "settle", longest << settle.low)?;
         }
         let how = self.field(axis, "swap", "swap_how")?;
@@ -51,7 +53,7 @@ impl<L: Read + Write> HostedStage<'_, L> {
         let word = bank << self.field(axis, "swap", "swap_bank")?.low | handover << how.low;
         self.write_one(axis, "swap", word)?;
         let mut left = self.patience(longest.saturating_add(PATIENCE_TICKS))?;
-        while self.status()?[axis].table_bank != bank {
+        while self.table_bank(axis)? != bank {
             if !self.pass(&mut left)? {
                 return Err(self.no_table(
                     axis,
@@ -60,6 +62,50 @@ impl<L: Read + Write> HostedStage<'_, L> {
             }
         }
         Ok(bank)
+    }
+
+    /// The bank in use, once no handover to it is under way: until then the shaper takes no taps.
+    fn settled_bank(&mut self, axis: usize, ticks: u32) -> Result<u32, HostError> {
+        let [pending, bank] = ["swap_pending", "table_bank"].map(|name| self.field(axis, "status", name));
+        let (pending, bank) = (pending?, bank?);
+        let ring = self.read_one(axis, "ring_samples")?.max(ticks);
+        let mut left = self.patience(ring.saturating_add(PATIENCE_TICKS))?;
+        loop {
+            let status = self.read_one(axis, "status")?;
+            if pending.of(status) == 0 {
+                return Ok(bank.of(status));
+            }
+            if !self.pass(&mut left)? {
+                return Err(self.no_table(
+                    axis,
+                    "the shaper is still handing over to another table: try again".to_owned(),
+                ));
+            }
+        }
+    }
+
+    /// Reads the table in a bank: 0 is the machine's, 1 and 2 can be loaded. A bank into which nothing was loaded has no taps.
+    ///
+    /// # Errors
+    /// [`HostError`]
+    pub fn read_table(&mut self, axis: usize, bank: u32) -> Result<Vec<Tap>, HostError> {
+        let most = self.read_one(axis, "most_taps")?;
+        let delay = self.field(axis, "tap", "tap_delay")?;
+        let coefficient = self.field(axis, "tap", "tap_coefficient")?;
+        let above = u32::BITS - coefficient.width;
+        let mut taps = Vec::new();
+        for index in 0..most {
+            let word = self.tap(axis, index, bank)?;
+            let value = (coefficient.of(word) << above) as i32 >> above;
+            if value == 0 {
+                break;
+            }
+            taps.push(Tap {
+                delay_samples: delay.of(word),
+                coefficient: value,
+            });
+        }
+        Ok(taps)
     }
 
     fn no_table(&self, axis: usize, what: String) -> HostError {
@@ -79,15 +125,15 @@ impl<L: Read + Write> HostedStage<'_, L> {
         let longest = table.longest_delay_samples();
         let wrong = if table.coefficient_fraction() != fraction {
             format!(
-                "the coefficients have {} fraction bits, and those of the stage {fraction}: set `coefficient_fraction = {fraction}` in \
+                "the coefficients have {} fraction bits, and those of the hardware {fraction}: set `coefficient_fraction = {fraction}` in \
                  [fixed_point]",
                 table.coefficient_fraction()
             )
         } else if count > most as usize {
-            format!("the table has {count} taps, and the stage holds {most}: choose a shorter shaper")
+            format!("the table has {count} taps, and the hardware holds {most}: choose a shorter shaper")
         } else if longest > ring.saturating_sub(2) {
             format!(
-                "the table's longest delay is {longest} samples, and the stage holds {}: choose a shorter shaper",
+                "the table's longest delay is {longest} samples, and the hardware holds {}: choose a shorter shaper",
                 ring.saturating_sub(2)
             )
         } else {

@@ -3,6 +3,7 @@
 
 mod campaign;
 mod faults;
+mod inline;
 mod spi;
 mod stage;
 #[cfg(unix)]

@@ -246,10 +246,14 @@ fn another_stage_is_refused_with_what_was_found_and_expected() {
         (
             1,
             0x1_0005,
-            "the stage has version 1.5 of the registers, and this posicast needs 2.2".to_owned(),
+            "the hardware has version 1.5 of the registers, and this posicast needs 2.2".to_owned(),
         ),
-        (1, 0x2_0001, "the stage has version 2.1 of the registers".to_owned()),
-        (2, 3, "AXES of the stage is 3, but the machine file gives 2".to_owned()),
+        (1, 0x2_0001, "the hardware has version 2.1 of the registers".to_owned()),
+        (
+            2,
+            3,
+            "AXES of the hardware is 3, but the machine file gives 2".to_owned(),
+        ),
         (
             6,
             0xabcd,

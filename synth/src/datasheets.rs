@@ -21,7 +21,7 @@ const STAGE: [(&str, &str); 10] = pages![
     "stage" "axis" "segments" "drive_command" "linear_scale" "error_table" "encoder_generator" "excitation" "trace"
     "step_generator"
 ];
-/// Datasheets of machines whose stage has a line to a host.
+/// Datasheets of machines whose stage or inline shaper has a line to a host.
 const LINK: [(&str, &str); 1] = pages!["uart_bridge"];
 /// Datasheets of machines whose line is SPI; its frames are described in the page above.
 const SPI_LINK: [(&str, &str); 1] = pages!["spi_bridge"];
@@ -44,16 +44,24 @@ pub enum BuiltBlocks {
     SpiLinkedStage,
     /// An inline shaper.
     Inline,
+    /// An inline shaper with a serial line.
+    LinkedInline,
+    /// An inline shaper with SPI lines.
+    SpiLinkedInline,
 }
 
 /// The datasheets of a machine, as path in the output folder and text.
 pub fn files(built: BuiltBlocks) -> Vec<(String, String)> {
-    let is_inline = built == BuiltBlocks::Inline;
+    let is_inline = built >= BuiltBlocks::Inline;
     let at_least = |least| move |_: &&(&str, &str)| !is_inline && built >= least;
     let components = COMPONENTS.iter().filter(at_least(BuiltBlocks::Components));
     let stage = STAGE.iter().filter(at_least(BuiltBlocks::Stage));
-    let link = LINK.iter().filter(at_least(BuiltBlocks::LinkedStage));
-    let spi = SPI_LINK.iter().filter(at_least(BuiltBlocks::SpiLinkedStage));
+    let linked = built > BuiltBlocks::Inline || (!is_inline && built >= BuiltBlocks::LinkedStage);
+    let with_spi = matches!(built, BuiltBlocks::SpiLinkedStage | BuiltBlocks::SpiLinkedInline);
+    let link = LINK.iter().filter(|_| linked);
+    let spi = SPI_LINK.iter().filter(|_| with_spi);
+    let registers = COMPONENTS.iter().filter(|(name, _)| *name == "registers");
+    let registers = registers.filter(|_| built > BuiltBlocks::Inline);
     let pages: Vec<_> = SHAPER
         .iter()
         .chain(components)
@@ -61,6 +69,7 @@ pub fn files(built: BuiltBlocks) -> Vec<(String, String)> {
         .chain(link)
         .chain(spi)
         .chain(INLINE.iter().filter(|_| is_inline))
+        .chain(registers)
         .collect();
     let is_there = |name: &str| pages.iter().any(|(page, _)| *page == name);
     let file = |(name, text): &&(&str, &str)| (format!("{FOLDER}/{name}.md"), with_links_to(text, is_there));

@@ -104,4 +104,5 @@ pub(crate) const REGISTRY: &[RegistryRow] = &[
     component::ROW,
     stage::ROW,
     inline_shaper::ROW,
+    linked_stage::inline::ROW,
 ];

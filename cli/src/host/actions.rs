@@ -10,6 +10,7 @@ use posicast_flow::text::{shell_word, write_text};
 use posicast_host::{HostError, HostMove, RecordedTrace, Shake, TraceRequest};
 use posicast_machine::machine_file::Machine;
 use posicast_system::output::OutputFiles;
+use posicast_taps::TapTable;
 use std::path::Path;
 
 /// Largest amplitude in counts: its 16 bits have 8 fraction bits.
@@ -188,11 +189,12 @@ fn write(args: &TraceArgs, trace: &RecordedTrace) -> Result<(), Failure> {
     )
 }
 
-pub(super) fn load<'m>(
-    machine: &'m Machine,
+/// Loads the table of an axis of the file `from`; `load` opens the hardware and loads it, and returns the bank.
+pub(super) fn load(
+    machine: &Machine,
     axis: &str,
     from: &Path,
-    open: impl FnOnce() -> Result<Port<'m>, Failure>,
+    load: impl FnOnce(usize, &TapTable) -> Result<Result<u32, HostError>, Failure>,
 ) -> Result<(), Failure> {
     let index = axis_of(machine, axis, from)?;
     let other = machine::read(from)?.machine;
@@ -203,15 +205,19 @@ pub(super) fn load<'m>(
             0,
             "clock.sample_hz",
             format_args!(
-                "{} Hz here, but {} Hz in the stage: a table fits one sample rate only",
+                "{} Hz here, but {} Hz in the hardware: a table fits one sample rate only",
                 other.clock.sample_hz, machine.clock.sample_hz
             ),
         ));
     }
     let report = DesignReport::new(&other, from)?;
     let table = &report.design.axes[of_other].table;
-    let mut stage = open()?;
-    let bank = stage.load_table(index, table).map_err(|error| match error {
+    // An inline shaper refuses shapers for which the lines of its drives are too slow.
+    report
+        .hardware
+        .inline()
+        .map_err(|error| machine::of_hardware(&error, from))?;
+    let bank = load(index, table)?.map_err(|error| match error {
         HostError::Table { .. } => Failure::because(error).in_file(from),
         error => failure(error),
     })?;

@@ -8,6 +8,7 @@ use posicast_flow::Failure;
 use posicast_flow::text::UnitDocument;
 use posicast_host::{AxisStatus, causes};
 use posicast_machine::machine_file::{AxisSection, Machine};
+use posicast_taps::Tap;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -44,6 +45,19 @@ pub(super) fn status(stage: &mut Port<'_>, json: bool) -> Result<(), Failure> {
     } else {
         output::print(&text(machine, &all))
     }
+}
+
+/// Prints the taps of a bank of an axis; `active` is the bank in use.
+pub(super) fn table(axis: &str, (bank, active): (u32, u32), taps: &[Tap]) -> Result<(), Failure> {
+    let whose = if bank == 0 { "the machine's" } else { "loaded" };
+    let used = if bank == active { "in use" } else { "not in use" };
+    let mut text = format!("axis {axis}: bank {bank}, {whose}, {used}: {} taps\n", taps.len());
+    let mut rows = Table::new(&[">delay in samples", ">coefficient"]);
+    for tap in taps {
+        rows.row([tap.delay_samples.to_string(), tap.coefficient.to_string()]);
+    }
+    text += &rows.text("  ");
+    output::print(&text)
 }
 
 fn state(status: &AxisStatus) -> &'static str {

@@ -1,7 +1,20 @@
-//! The inline shaper on the command line: from the example to Verilog that equals its model, and files that are refused.
+//! The inline shaper on the command line: from the example to Verilog that equals its model, a host at its line, and files that are refused.
 
-use super::support::{example, generate, posicast, scratch};
+use super::support::{assert_fits_schema, example, generate, json, posicast, scratch};
+use posicast_blocks::linked_stage::address_limit;
+use posicast_closed_loop::inline_bench::InlineBench;
+use posicast_closed_loop::linked_bench::{LinkedBench, Registered};
+use posicast_machine::hardware::Hardware;
+use posicast_machine::machine_file;
+use posicast_machine::plan::design_machine;
 use predicates::prelude::*;
+use serialport::{SerialPort, TTYPort};
+use std::path::Path;
+use std::process::Output;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+use std::time::Duration;
 
 fn text() -> String {
     std::fs::read_to_string(example("inline.toml")).unwrap()
@@ -97,11 +110,223 @@ fn cli_inline_needs_steps_and_limits_on_every_axis() {
             "add [axis.input] to axis x",
         ],
     );
+}
+
+/// The example with a serial line.
+fn linked() -> String {
+    format!("{}[link]\nbaud = 3_000_000\n", text())
+}
+
+#[test]
+fn cli_inline_lines_that_cannot_be_are_refused() {
+    let text = linked().replacen("50_000_000", "20_000_000", 1);
+    let (_folder, file) = scratch(&text);
+    posicast().arg("design").arg(&file).assert().code(2).stderr(
+        predicate::str::contains("link.baud")
+            .and(predicate::str::contains("what a clock of 20000000 Hz makes within 2 %")),
+    );
     refused(
         "[clock]",
-        "[link]\nbaud = 115200\n[clock]",
-        &["[link] beside [axis.input]", "remove [link]"],
+        "[link]\nbaud = 9600\n[clock]",
+        &["link.baud", "115200 to 3000000"],
     );
+    refused(
+        "[clock]",
+        "[link]\nline = \"avalon\"\nbaud = 115200\n[clock]",
+        &["link.line", "uart, spi"],
+    );
+    refused(
+        "[clock]",
+        "[link]\nline = \"spi\"\nsck_hz = 10_000_000\n[clock]",
+        &["link.sck_hz", "an eighth of the clock", "6250000"],
+    );
+    refused(
+        "[clock]",
+        "[link]\nbaud = 115200\ntimeout_s = 5.0\n[clock]",
+        &["link.timeout_s"],
+    );
+}
+
+#[test]
+fn cli_inline_with_a_line_is_generated_with_its_registers_and_without_one_nothing_changes() {
+    let folder = tempfile::tempdir().unwrap();
+    let without = folder.path().join("without");
+    generate(&example("inline.toml"), &without).success();
+    let (_scratch, file) = scratch(&linked());
+    let output = folder.path().join("router");
+    generate(&file, &output).success();
+    let top = std::fs::read_to_string(output.join("rtl/router_link.v")).unwrap();
+    for pin in ["uart_rx", "uart_tx", "irq", "x_step_in", "drive_enable", "settled"] {
+        assert!(top.contains(pin), "{pin}");
+    }
+    for path in [
+        "docs/router_inline.md",
+        "docs/uart_bridge.md",
+        "driver/inc/posicast_inline.h",
+        "driver/inc/posicast_inline_regs.h",
+        "driver/src/posicast_inline.c",
+    ] {
+        assert!(output.join(path).is_file(), "{path}");
+        assert!(!without.join(path).exists(), "{path}");
+    }
+    // What both have, but the axes and the group, is the same file.
+    let inline = std::fs::read_to_string(without.join("rtl/router_inline.v")).unwrap();
+    assert!(
+        !inline.contains("avs_") && !inline.contains("bypass_request"),
+        "{inline}"
+    );
+    let mut same = 0;
+    for entry in std::fs::read_dir(without.join("rtl")).unwrap() {
+        let name = entry.unwrap().file_name();
+        let there = output.join("rtl").join(&name);
+        if there.is_file() && std::fs::read(&there).unwrap() == std::fs::read(without.join("rtl").join(&name)).unwrap()
+        {
+            same += 1;
+        }
+    }
+    assert!(same > 10, "{same}");
+}
+
+#[test]
+fn cli_inline_verilog_with_a_line_equals_its_model() {
+    let (folder, file) = scratch(&linked());
+    let output = folder.path().join("router");
+    generate(&file, &output).success();
+    posicast()
+        .arg("verify")
+        .arg(&output)
+        .args(["--block", "linked_inline_shaper", "--block", "registers"])
+        .assert()
+        .success()
+        .stdout(predicate::str::contains("linked_inline_shaper"));
+}
+
+/// An inline shaper with a controller at a port, until it is dropped.
+struct Served {
+    port: String,
+    ends: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Served {
+    /// The controller gives the axis X so many steps.
+    fn new(text: &str, steps: i64) -> Self {
+        let (mut far, near) = TTYPort::pair().unwrap();
+        let port = near.name().unwrap();
+        // One program holds a port: the command opens it again.
+        drop(near);
+        far.set_timeout(Duration::from_millis(2)).unwrap();
+        let ends = Arc::new(AtomicBool::new(false));
+        let (text, until) = (text.to_owned(), Arc::clone(&ends));
+        let thread = std::thread::spawn(move || {
+            let machine = machine_file::parse("machine.toml", &text).unwrap();
+            let design = design_machine(&machine).unwrap();
+            let hardware = Hardware::of(&machine, &design).unwrap();
+            let component = hardware.inline().unwrap().unwrap().component.clone().unwrap();
+            let mut bench = InlineBench::new(&component, 1).unwrap();
+            bench.clocks(3_000_000).unwrap();
+            bench.steps("x", steps).unwrap();
+            bench.clocks(4_000_000).unwrap();
+            let limit = address_limit(&component);
+            let mut linked = LinkedBench::new(bench, &machine.link.unwrap(), &machine.clock, limit);
+            linked.serve(far, &until).unwrap();
+        });
+        Self {
+            port,
+            ends,
+            thread: Some(thread),
+        }
+    }
+}
+
+impl Drop for Served {
+    fn drop(&mut self) {
+        self.ends.store(true, Ordering::Relaxed);
+        let ended = self.thread.take().map(JoinHandle::join);
+        assert!(ended.is_none_or(|ended| ended.is_ok()) || std::thread::panicking());
+    }
+}
+
+fn host(port: &str, machine: &Path, words: &[&str]) -> (Option<i32>, String, String) {
+    let mut command = posicast();
+    command.args(["host", port]).args(words);
+    // The simulation is slower than the hardware.
+    command.arg("--machine").arg(machine).args(["--timeout", "4000"]);
+    let Output { status, stdout, stderr } = command.output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (status.code(), text(stdout), text(stderr))
+}
+
+#[test]
+fn cli_inline_host_shows_counts_switches_the_shaping_and_loads() {
+    let text = linked();
+    let (folder, file) = scratch(&text);
+    let served = Served::new(&text, -120);
+    let run = |words: &[&str]| host(&served.port, &file, words);
+    let (code, said, error) = run(&["status", "--json"]);
+    assert_eq!(code, Some(0), "{error}");
+    let document = json(said.as_bytes());
+    assert_fits_schema("host-inline-status", &document);
+    let x = &document["axes"][0];
+    let counts = ["input_steps", "given_steps", "owed_steps"].map(|name| x[name].as_i64().unwrap());
+    assert_eq!(counts, [-120, -120, 0], "{said}");
+    assert_eq!(
+        (&document["settled"], &document["fault"]),
+        (&true.into(), &false.into()),
+        "{said}"
+    );
+
+    let (code, said, error) = run(&["bypass", "on"]);
+    assert_eq!(code, Some(0), "{error}");
+    assert!(said.contains("no axis is shaped"), "{said}");
+    let (_, said, _) = run(&["status"]);
+    assert!(said.contains("router: enabled; no axis is shaped; settled"), "{said}");
+    let (code, said, _) = run(&["bypass", "off"]);
+    assert!(code == Some(0) && said.contains("all axes are shaped"), "{said}");
+
+    let other = folder.path().join("zv.toml");
+    std::fs::write(&other, text.replacen("kind = \"mzv\"", "kind = \"zv\"", 1)).unwrap();
+    let (code, said, error) = run(&["load", "x", other.to_str().unwrap()]);
+    assert_eq!(code, Some(0), "{error}");
+    assert!(said.contains("read back and in use, in bank 1"), "{said}");
+    let (code, said, _) = run(&["table", "x"]);
+    assert!(code == Some(0) && said.contains("bank 1, loaded, in use"), "{said}");
+    let (_, said, _) = run(&["table", "x", "--bank", "0"]);
+    assert!(said.contains("bank 0, the machine's, not in use"), "{said}");
+
+    for (words, expected) in [
+        (
+            vec!["move", "x=1"],
+            "an inline shaper has no `move`: its controller moves the axes",
+        ),
+        (vec!["trace", "x", "-o", "x.csv"], "an inline shaper has no `trace`"),
+        (vec!["table", "w"], "no axis `w`"),
+    ] {
+        let (code, said, error) = run(&words);
+        assert_eq!((code, said.as_str()), (Some(2), ""), "{words:?}");
+        assert!(error.contains(expected), "{error}");
+    }
+    // Only the comment differs: it is another file.
+    std::fs::write(&other, format!("{text}# changed\n")).unwrap();
+    let (code, _, error) = host(&served.port, &other, &["bypass", "on"]);
+    assert_eq!(code, Some(2));
+    assert!(
+        error.contains("was made from a machine file with the checksum"),
+        "{error}"
+    );
+}
+
+#[test]
+fn cli_inline_host_refuses_a_stage_a_bypass_and_an_inline_shaper_without_a_line() {
+    let (_folder, file) = scratch(&text());
+    let (code, _, error) = host("/dev/null", &file, &["status"]);
+    assert_eq!(code, Some(2));
+    assert!(error.contains("the machine has no [link]"), "{error}");
+    let stage = std::fs::read_to_string(example("xy-stage.toml")).unwrap();
+    let (_folder, file) = scratch(&format!("{stage}[link]\nbaud = 3_000_000\n"));
+    let (code, _, error) = host("/dev/null", &file, &["bypass", "on"]);
+    assert_eq!(code, Some(2));
+    assert!(error.contains("a stage has no `bypass`"), "{error}");
 }
 
 #[test]

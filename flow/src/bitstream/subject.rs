@@ -3,7 +3,7 @@
 
 use super::bare::Bare;
 use super::document::LockStepDocument;
-use crate::hardware::{Built, STAGE_SUFFIX};
+use crate::hardware::Built;
 use posicast_bitstream::BitstreamError;
 use posicast_bitstream::behaviour;
 use posicast_bitstream::boards::{FpgaBoard, PinUse};
@@ -116,7 +116,7 @@ impl<'a> Subject<'a> {
     pub(super) fn logic(&self) -> String {
         match self {
             Self::Shapers(top) => top.machine().to_owned(),
-            Self::Stage { machine, .. } => format!("{machine}{STAGE_SUFFIX}"),
+            Self::Stage { block, .. } => block.inside().to_owned(),
         }
     }
 

@@ -4,6 +4,7 @@ use super::advice::{self, Advice};
 use super::waves::Waves;
 use crate::bench::{self, Simulator};
 use crate::failure::Failure;
+use crate::hardware::Built;
 use crate::text::percent;
 use crate::tolerance::{beyond_tolerance, just_above_tolerance, shaped_modes};
 use posicast_machine::machine_file::Machine;
@@ -356,12 +357,25 @@ pub(crate) fn lint(simulator: Simulator, sources: &Sources, tops: &[&dyn Block])
     )))
 }
 
+/// The inline shaper, which a run does not simulate.
+pub(crate) fn inline(built: &Built<'_>) -> Option<Check> {
+    let top = built.inline_top()?;
+    let block = built.link.as_ref().map_or("inline_shaper", |link| link.name());
+    let reason = format!("a run does not simulate {top}; `posicast verify MACHINE --block {block}` does");
+    Some(Check::not_exercised(
+        "the inline shaper equals its model in every clock",
+        true,
+        &reason,
+    ))
+}
+
 /// The line to a host, which a run does not simulate.
 pub(crate) fn link(link: Option<&LinkedStageBlock>) -> Option<Check> {
     let link = link?;
     let reason = format!(
-        "a run does not simulate {}; `posicast verify MACHINE --block linked_stage` does",
-        link.top()
+        "a run does not simulate {}; `posicast verify MACHINE --block {}` does",
+        link.top(),
+        link.name()
     );
     Some(Check::not_exercised(
         "the line to the host, with its bridge, equals its model",

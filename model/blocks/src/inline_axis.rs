@@ -160,6 +160,13 @@ impl InlineAxisConfig {
         Self { active_low, ..self }
     }
 
+    /// The same, settled after this many ticks without a step, cut to 1 to [`MOST_SETTLE_TICKS`].
+    #[must_use]
+    pub fn settles_after(self, settle_ticks: u64) -> Self {
+        let settle_ticks = settle_ticks.clamp(1, MOST_SETTLE_TICKS.into()) as u32;
+        Self { settle_ticks, ..self }
+    }
+
     /// Largest number of steps per tick that does not stop the axis.
     pub fn limit_steps(&self) -> u32 {
         self.limit_steps

@@ -3,8 +3,8 @@
 //! - `drive_enable` follows `enable` and `emergency_stop_n` without a clock. An emergency stop that lasts three clocks is
 //!   remembered until the faults are cleared.
 //! - The axes run while `enable` is high and there is no fault; a fault of one axis stops all of them.
-//! - `bypass` takes effect at a tick before which all axes are settled, or while none runs: then shaped and unshaped
-//!   positions are equal, and no axis jumps.
+//! - `bypass`, or with registers `bypass_request`, takes effect at a tick before which all axes are settled, or while none
+//!   runs: then shaped and unshaped positions are equal, and no axis jumps.
 //! - A rising edge of `clear_faults` clears the faults.
 //!
 //! ```text
@@ -22,7 +22,7 @@ const SINGLE: usize = 6;
 const OUTPUTS: usize = 6;
 
 ports! {
-    inline_group_ports(N);
+    inline_group_ports(N, R);
 
     inputs {
         /// Synchronous reset.
@@ -41,6 +41,8 @@ ports! {
         axis_settled[N]: Bit;
         /// `fault` of the axis.
         axis_fault[N]: Bit;
+        /// Of the registers: high asks for no shaping, as the pin does.
+        bypass_request[R]: Bit;
     }
 
     outputs {
@@ -56,6 +58,39 @@ ports! {
         settled: Bit;
         /// An axis has stopped with a cause, or there was an emergency stop.
         fault: Bit;
+    }
+}
+
+/// Sizes of the group.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct InlineGroupConfig {
+    /// Number of axes, 1 to [`MOST_AXES`](super::group::MOST_AXES).
+    pub axes: usize,
+    /// Whether registers, too, may ask for no shaping.
+    pub with_registers: bool,
+}
+
+impl InlineGroupConfig {
+    /// The group of this many axes, without registers.
+    pub const fn without_registers(axes: usize) -> Self {
+        Self {
+            axes,
+            with_registers: false,
+        }
+    }
+
+    /// Number of ports `bypass_request`.
+    pub const fn requests(self) -> usize {
+        self.with_registers as usize
+    }
+
+    /// The ports of a group of these sizes.
+    pub fn ports(self) -> Vec<Port> {
+        ports(self.axes, self.requests())
+    }
+
+    const fn inputs(self) -> usize {
+        SINGLE + 2 * self.axes + self.requests()
     }
 }
 
@@ -75,7 +110,7 @@ struct State {
 }
 
 impl State {
-    fn clock(&mut self, pins: [bool; 4], tick: bool, all_settled: bool, any_fault: bool) {
+    fn clock(&mut self, pins: [bool; 4], tick: bool, (all_settled, any_fault): (bool, bool), requested: bool) {
         let [enable, emergency, bypass, clear] = self.lines.map(|line| line[1]);
         let before = *self;
         self.awake = true;
@@ -86,7 +121,7 @@ impl State {
         self.settled = all_settled;
         self.fault = before.emergency || any_fault;
         if tick && (all_settled || !before.run) {
-            self.bypassed = bypass;
+            self.bypassed = bypass || requested;
         }
         for (line, pin) in self.lines.iter_mut().zip(pins) {
             *line = [pin, line[0]];
@@ -98,16 +133,16 @@ impl State {
 #[derive(Debug, Clone)]
 pub struct InlineGroup {
     ports: Vec<Port>,
-    axes: usize,
+    config: InlineGroupConfig,
     state: State,
 }
 
 impl InlineGroup {
-    /// The state after reset, for 1 to [`MOST_AXES`](super::group::MOST_AXES) axes.
-    pub fn new(axes: usize) -> Self {
+    /// The state after reset.
+    pub fn new(config: InlineGroupConfig) -> Self {
         Self {
-            ports: ports(axes),
-            axes,
+            ports: config.ports(),
+            config,
             state: State::default(),
         }
     }
@@ -130,14 +165,16 @@ impl InlineGroup {
     /// The state after a clock with these inputs.
     fn next(&self, inputs: &[u64]) -> State {
         let bit = |at: usize| inputs.get(at).is_some_and(|level| level & 1 != 0);
-        let mut settled = (0..self.axes).map(|axis| bit(SINGLE + axis));
-        let mut faults = (0..self.axes).map(|axis| bit(SINGLE + self.axes + axis));
+        let axes = self.config.axes;
+        let mut settled = (0..axes).map(|axis| bit(SINGLE + axis));
+        let mut faults = (0..axes).map(|axis| bit(SINGLE + axes + axis));
+        let requested = self.config.with_registers && bit(SINGLE + 2 * axes);
         let mut state = self.state;
         if bit(0) {
             return State::default();
         }
         let pins = [bit(1), !bit(2), bit(3), bit(4)];
-        state.clock(pins, bit(5), settled.all(|is| is), faults.any(|is| is));
+        state.clock(pins, bit(5), (settled.all(|is| is), faults.any(|is| is)), requested);
         state
     }
 }
@@ -174,13 +211,13 @@ impl ClockedBlock for InlineGroup {
     }
 
     fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
-        if (inputs.len(), outputs.len()) != (SINGLE + 2 * self.axes, OUTPUTS) {
+        if (inputs.len(), outputs.len()) != (self.config.inputs(), OUTPUTS) {
             return Err(StepError(format!(
                 "{} inputs and {} outputs: an inline group of {} axes has {} and {OUTPUTS}",
                 inputs.len(),
                 outputs.len(),
-                self.axes,
-                SINGLE + 2 * self.axes
+                self.config.axes,
+                self.config.inputs()
             )));
         }
         self.show_with(inputs, outputs);

@@ -465,3 +465,43 @@ fn long_a_ride_beyond_the_end_of_the_position_loses_no_step() {
     let steps = (1 << 23) + 50_000;
     assert_eq!(rides(steps), (steps as i64, false));
 }
+
+/// Every history of a small shaper: all tables of positive taps with coefficients of two fraction bits and delays of up to 2, and
+/// every command of four changes of -2 to 2. No change of the output is outside those of the command within the shaper's duration.
+#[test]
+fn every_command_of_every_small_positive_shaper_is_never_faster() {
+    let mut tables = Vec::new();
+    for first in 0..=4_i32 {
+        for second in 0..=4 - first {
+            let parts = [(0, first), (1, second), (2, 4 - first - second)];
+            tables.push(parts.into_iter().filter(|(_, part)| *part > 0).collect::<Vec<_>>());
+        }
+    }
+    assert_eq!(tables.len(), 15);
+    for taps in tables {
+        let longest = taps.iter().map(|(delay, _)| *delay as usize).max().unwrap();
+        let shaper = ShaperConfig::new(32, table(2, &taps)).unwrap();
+        let shaper = shaper.for_motion(INLINE_MOTION).unwrap();
+        for command in 0..5_u32.pow(4) {
+            let moves: Vec<i64> = (0..4).map(|at| i64::from(command / 5_u32.pow(at) % 5) - 2).collect();
+            let mut shaper = MotionShaper::new(&shaper);
+            let (mut x, mut y) = (0, shaper.start([0; 3])[0]);
+            for at in 0..moves.len() + longest {
+                let by = moves.get(at).copied().unwrap_or(0);
+                x += by;
+                let next = shaper.push([x, 0, 0])[0];
+                let window = (at.saturating_sub(longest)..=at).map(|at| moves.get(at).copied().unwrap_or(0));
+                // Before the command, it stood.
+                let most = window.clone().fold(0, i64::max);
+                let least = window.fold(0, i64::min);
+                assert!(
+                    (least..=most).contains(&(next - y)),
+                    "{taps:?} {moves:?} at {at}: {}",
+                    next - y
+                );
+                y = next;
+            }
+            assert_eq!(y, x, "{taps:?} {moves:?}");
+        }
+    }
+}

@@ -16,7 +16,7 @@ use posicast_blocks::error_table::{EntryUnit, ErrorTable, ErrorTableConfig, Erro
 use posicast_blocks::excitation::Excitation;
 use posicast_blocks::group::Group;
 use posicast_blocks::inline_axis::{InlineAxis, InlineAxisConfig};
-use posicast_blocks::inline_group::InlineGroup;
+use posicast_blocks::inline_group::{InlineGroup, InlineGroupConfig};
 use posicast_blocks::lasting_deviation::LastingDeviation;
 use posicast_blocks::linear_scale::LinearScale;
 use posicast_blocks::pulse_counter::PulseCounter;
@@ -219,7 +219,7 @@ fn blocks() -> Vec<Tried> {
         tried(
             "inline_group",
             &[("tick", RARE), ("rst", RARE), ("axis_fault_1", RARE)],
-            || InlineGroup::new(2),
+            || InlineGroup::new(InlineGroupConfig::without_registers(2)),
         ),
         tried(
             "linear_scale",

@@ -14,11 +14,14 @@
 //! constants, tables from the stage's configuration. The core contains no name of an axis: it works on windows, by
 //! number.
 //!
+//! An inline shaper with a line has a smaller driver: `posicast_inline.h` and `.c`, and the header of its registers.
+//!
 //! `docs/driver.md` says how a program uses it.
 
 mod bare_metal;
 mod family;
 mod fixed;
+mod inline;
 mod linux;
 mod machine;
 mod macros;
@@ -27,6 +30,7 @@ mod stage_registers;
 mod system;
 
 pub use family::AxisFamily;
+pub use inline::inline_files;
 
 use posicast_blocks::registers::RegisterMap;
 use posicast_blocks::stage::StageConfig;

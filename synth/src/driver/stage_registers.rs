@@ -21,9 +21,9 @@ const STAGE: &str = "POSICAST_STAGE";
 const AXIS: &str = "POSICAST_AXIS";
 
 /// A register of the axes' windows, without an axis's name, with its widest fields.
-struct AxisRegister {
-    register: Register,
-    fields: Vec<Field>,
+pub(super) struct AxisRegister {
+    pub(super) register: Register,
+    pub(super) fields: Vec<Field>,
     /// Names of the axes that have it.
     axes: Vec<String>,
 }
@@ -156,7 +156,7 @@ fn error_tables(text: &mut String, driver: &StageDriver<'_>) {
 }
 
 /// The registers of all windows of axes, by their place.
-fn axis_registers(map: &RegisterMap, axes: &[&str]) -> Vec<AxisRegister> {
+pub(super) fn axis_registers(map: &RegisterMap, axes: &[&str]) -> Vec<AxisRegister> {
     let mut found: Vec<AxisRegister> = Vec::new();
     for (window, axis) in (1..).zip(axes) {
         let own = |name: &str| name.strip_prefix(&format!("{axis}_")).unwrap_or(name).to_owned();

@@ -129,7 +129,8 @@ impl Design<'_> {
         for unit in self.units() {
             add(format!("sopc/{}_hw.tcl", unit.top), hw_tcl::text(unit));
         }
-        if let Some((_, bridge)) = &self.link {
+        // An inline shaper is in no system with a processor.
+        if let Some((_, bridge)) = self.link.as_ref().filter(|_| self.inline.is_none()) {
             let name = bridge.name(self.machine);
             add(format!("sopc/{name}_hw.tcl"), bridge.text(self.machine));
         }

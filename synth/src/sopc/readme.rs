@@ -86,9 +86,14 @@ to overwrite a file that was edited, and names it.
         );
     }
     if let Some((top, bridge)) = &design.link {
+        let what = if design.inline.is_some() {
+            "the inline shaper"
+        } else {
+            "the stage"
+        };
         let line = match bridge.config {
-            BridgeConfig::Uart(config) => format!("the stage and its serial line of {} baud", config.baud()),
-            BridgeConfig::Spi(config) => format!("the stage and its SPI lines, up to {} Hz", config.most_sck_hz()),
+            BridgeConfig::Uart(config) => format!("{what} and its serial line of {} baud", config.baud()),
+            BridgeConfig::Spi(config) => format!("{what} and its SPI lines, up to {} Hz", config.most_sck_hz()),
         };
         let _ = writeln!(
             text,
@@ -96,6 +101,13 @@ to overwrite a file that was edited, and names it.
              (`docs/{block}.md`) |",
             block = bridge.config.block(),
         );
+        if let Some(InlineUnit { top, .. }) = &design.inline {
+            let _ = writeln!(
+                text,
+                "| `driver/` | C: the registers of the inline shaper, and functions for its state, counts and tables |\n\
+                 | `docs/{top}.md`, `.rdl`, `.svd` | the registers as Markdown, SystemRDL and SVD |"
+            );
+        }
     }
     if design.units().next().is_some() {
         text.push_str("| `sopc/*_hw.tcl` | components for Platform Designer (Qsys) |\n");

@@ -6,6 +6,7 @@ mod error_table;
 mod family;
 mod frames;
 mod identify;
+mod inline;
 mod integers;
 mod path;
 pub(crate) mod support;

@@ -247,6 +247,9 @@ const AXIS: [&str; 5] = [
     "tap_coefficient",
 ];
 
+/// Those of an axis of an inline shaper, which moves while it follows its input.
+const INLINE_AXIS: [&str; 5] = ["follow", "input_steps", "valid", "tap_write", "tap_coefficient"];
+
 impl InsideAStage {
     /// Counts of the row `instance`, which needs so many moves of each axis, taps of each axis, and per cent of the registers.
     pub(crate) fn new(instance: &str, axes: &[String], map: &RegisterMap, [moves, taps, per_cent]: [u64; 3]) -> Self {
@@ -271,15 +274,42 @@ impl InsideAStage {
     }
 }
 
-impl Reach for InsideAStage {
+/// Counts at the nets inside the model of an inline shaper with registers. An axis moves while its input counts.
+#[derive(Debug, Clone)]
+pub(crate) struct InsideAnInlineShaper(InsideAStage);
+
+impl InsideAStage {
+    /// Counts of the row `instance` of an inline shaper, which needs so many taps of each axis, and per cent of the registers.
+    pub(crate) fn of_inline(
+        instance: &str,
+        axes: &[String],
+        map: &RegisterMap,
+        [taps, per_cent]: [u64; 2],
+    ) -> InsideAnInlineShaper {
+        InsideAnInlineShaper(Self::new(instance, axes, map, [1, taps, per_cent]))
+    }
+}
+
+impl Reach for InsideAnInlineShaper {
     fn observe(&mut self, clock: &Clock<'_>) {
+        self.0.observe_at(clock, INLINE_AXIS, 1);
+    }
+
+    fn reached(&self) -> Vec<(String, ReachedCount)> {
+        self.0.reached()
+    }
+}
+
+impl InsideAStage {
+    /// Adds a clock. `names` are the nets of an axis, and `run` is the state in which it moves.
+    fn observe_at(&mut self, clock: &Clock<'_>, names: [&str; 5], run: u64) {
         let Some(inside) = clock.inside else {
             return;
         };
         if self.bus.is_empty() {
             self.bus = BUS.iter().filter_map(|name| inside.net(name)).collect();
             for axis in &mut self.axes {
-                let nets = AXIS
+                let nets = names
                     .iter()
                     .filter_map(|net| inside.net(&format!("{}_{net}", axis.name)));
                 axis.nets = nets.collect();
@@ -304,11 +334,17 @@ impl Reach for InsideAStage {
                 [*state, *position, *valid, *tap_write, *tap].map(|net| inside.value(net));
             axis.samples += valid;
             axis.taps += tap_write & u64::from(tap != 0);
-            let moves = state == RUN && position != axis.position;
+            let moves = state == run && position != axis.position;
             axis.moves += u64::from(moves && !axis.moved);
-            axis.moved = state == RUN && (axis.moved || moves);
+            axis.moved = state == run && (axis.moved || moves);
             axis.position = position;
         }
+    }
+}
+
+impl Reach for InsideAStage {
+    fn observe(&mut self, clock: &Clock<'_>) {
+        self.observe_at(clock, AXIS, RUN);
     }
 
     fn reached(&self) -> Vec<(String, ReachedCount)> {

@@ -98,7 +98,7 @@ fn rest_ticks(config: &InlineConfig) -> u64 {
 }
 
 /// Clocks of the first acts.
-pub(super) fn first_acts_clocks(config: &InlineConfig) -> u64 {
+pub(crate) fn first_acts_clocks(config: &InlineConfig) -> u64 {
     let ticks: u64 = first_acts(rest_ticks(config)).iter().map(|act| act.ticks).sum();
     (ticks + 3) * u64::from(config.tick.tick_clocks())
 }

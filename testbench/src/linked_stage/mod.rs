@@ -1,4 +1,5 @@
-//! The benches of a stage with its line, whose stimuli are a driver at the line, and lines and encoders at the pins.
+//! The benches of a stage, or of an inline shaper, with its line, whose stimuli are a driver at the line, and lines and encoders at the
+//! pins.
 //!
 //! | row | constants |
 //! |---|---|
@@ -8,11 +9,13 @@
 //! At 3,000,000 baud and 50 MHz a driver writes some 700 words in a million clocks, and the stage has 200 ticks. The dense row has as many
 //! scenes as the row of the stage on its bus.
 
+pub(crate) mod inline;
 pub(crate) mod stimuli;
 
 pub use self::stimuli::LinkedStageRandom;
 
 use posicast_blocks::component::Component;
+use posicast_blocks::inline_shaper::{InlineConfig, InlineError};
 use posicast_blocks::linked_stage::{BridgeConfig, LinkedStage, ports};
 use posicast_blocks::stage::{StageConfig, StageError};
 use posicast_blocks::uart_bridge::UartBridgeConfig;
@@ -25,7 +28,8 @@ use crate::Error;
 use crate::blocks::changes::Changes;
 use crate::blocks::levels::Levels;
 use crate::blocks::reached::InsideAStage;
-use crate::blocks::{Bins, Block, Exercise, Reach, Sources, not_in_rusthdl};
+use crate::blocks::{Bins, Block, Exercise, Reach, Sources, inside, not_in_rusthdl};
+use crate::inline_shaper::stimuli::first_acts_clocks;
 use crate::spi_bridge::SpiBridgeBlock;
 use crate::stage::FEW_TICKS_BARS;
 use crate::stage::short_ticks::{adapted, pairs, shortened};
@@ -59,9 +63,57 @@ pub struct LinkedStageBlock {
     /// Ticks in which the slowest brake opens.
     brake_ticks: u64,
     tick_clocks: u64,
+    /// The inline shaper that is in the place of a stage.
+    inline: Option<InlineConfig>,
 }
 
 impl LinkedStageBlock {
+    /// Creates the top `names[0]` with the inline shaper `names[1]`, which has these settings and this checksum of its machine file;
+    /// modules whose contents depend on the machine begin with `names[2]`.
+    ///
+    /// # Errors
+    /// As [`Component::inline_shaper`].
+    pub fn of_inline(
+        (shaper, machine_crc): (&InlineConfig, Option<u32>),
+        (config, clock_hz): (BridgeConfig, f64),
+        names: [&str; 3],
+    ) -> Result<Self, InlineError> {
+        let axes: Vec<String> = shaper.axes.iter().map(|axis| axis.name.clone()).collect();
+        Ok(Self {
+            instance: format!("{}, {} without time-outs", axes.join(", "), config.line()),
+            stage: Component::inline_shaper(shaper, machine_crc)?,
+            config,
+            clock_hz,
+            axes,
+            names: names.map(str::to_owned),
+            brake_ticks: 0,
+            tick_clocks: shaper.tick.tick_clocks().into(),
+            inline: Some(shaper.for_any_table()),
+        })
+    }
+
+    /// The inline shaper or the stage, with its registers.
+    pub fn component(&self) -> &Component {
+        &self.stage
+    }
+
+    /// Name of the module of the stage or the inline shaper.
+    pub fn inside(&self) -> &str {
+        &self.names[1]
+    }
+
+    /// The blocks in the inline shaper or the stage, each alone.
+    ///
+    /// # Errors
+    /// As [`crate::shaper::ShaperBlock::new`].
+    pub fn inner(&self) -> Result<Vec<Box<dyn Block>>, Error> {
+        let instance = match self.inline {
+            Some(_) => "in the inline shaper",
+            None => "in the stage",
+        };
+        inside::of_joined(self.stage.whole(), &self.names[2], instance)
+    }
+
     /// Creates the top `names[0]` with the stage `names[1]`, which has these settings; modules whose contents depend on the machine begin
     /// with `names[2]`.
     ///
@@ -83,6 +135,7 @@ impl LinkedStageBlock {
             names: names.map(str::to_owned),
             brake_ticks: brakes.max().unwrap_or(0).into(),
             tick_clocks: stage.tick.tick_clocks().into(),
+            inline: None,
         })
     }
 
@@ -106,7 +159,11 @@ impl LinkedStageBlock {
 
     fn driver(&self, with_borders: bool, seed: u64) -> LinkedStageRandom {
         let line = (&self.config, self.clock_hz);
-        LinkedStageRandom::new(&self.stage, &self.axes, line, with_borders, seed)
+        let pins = match &self.inline {
+            Some(config) => inline::pins(config, self.stage.map(), seed),
+            None => stimuli::pins(&self.stage, &self.axes, seed),
+        };
+        LinkedStageRandom::new((&self.stage, pins), &self.axes, line, with_borders, seed)
     }
 
     fn reach_with(&self, bars: [u64; 3]) -> InsideAStage {
@@ -116,7 +173,10 @@ impl LinkedStageBlock {
 
 impl Block for LinkedStageBlock {
     fn name(&self) -> &str {
-        "linked_stage"
+        match self.inline {
+            Some(_) => "linked_inline_shaper",
+            None => "linked_stage",
+        }
     }
 
     fn instance(&self) -> &str {
@@ -149,11 +209,18 @@ impl Block for LinkedStageBlock {
     }
 
     fn coverage(&self) -> Box<dyn Bins + '_> {
-        Box::new(Changes::new(&ports(&self.stage, &self.config)))
+        let ports = ports(&self.stage, &self.config);
+        match &self.inline {
+            Some(config) => Box::new(inline::InlineChanges::new(config, &ports)),
+            None => Box::new(Changes::new(&ports)),
+        }
     }
 
     fn least_clocks(&self) -> u64 {
         let line = (LEAST_BYTES * LinkedStageRandom::byte_clocks(&self.config, self.clock_hz)) as u64;
+        if let Some(config) = &self.inline {
+            return line.max(first_acts_clocks(config));
+        }
         if self.waits_for_a_move() {
             line.max((self.brake_ticks + MOVE_TICKS) * self.tick_clocks)
         } else {
@@ -164,6 +231,14 @@ impl Block for LinkedStageBlock {
     /// A move of each axis, unless its brake opens too late: then the dense row has it.
     fn reach(&self) -> Box<dyn Reach + '_> {
         let [_, taps, per_cent] = FEW_TICKS_BARS;
+        if self.inline.is_some() {
+            return Box::new(InsideAStage::of_inline(
+                &self.instance,
+                &self.axes,
+                self.stage.map(),
+                [inline::LEAST_TAPS, per_cent],
+            ));
+        }
         Box::new(self.reach_with([self.waits_for_a_move().into(), taps, per_cent]))
     }
 

@@ -53,10 +53,46 @@ struct Frame {
     waiting: u32,
 }
 
+/// Who drives the pins beside a line, and what the host at the line is to write.
+pub(crate) trait BesideALine {
+    /// Fills the inputs but those of the bus, for a driver that waits for the axes of the mask `waiting`; moods last `longer` times as
+    /// long as on the bus.
+    fn beside_a_line(&mut self, seen: &[u64], inputs: &mut [u64], waiting: u32, longer: u64);
+    /// Returns at most `most` writes that the driver would make now, and the mask of their axes.
+    fn due_writes(&mut self, most: usize) -> (Vec<(u32, u32)>, u32);
+    /// Whether random writes may go to any register now.
+    fn is_wild(&self) -> bool;
+    /// Whether the driver is in a sequence of writes to an axis.
+    fn writes(&self, axis: usize) -> bool;
+}
+
+impl BesideALine for StageRandom {
+    fn beside_a_line(&mut self, seen: &[u64], inputs: &mut [u64], waiting: u32, longer: u64) {
+        self.beside_a_line(seen, inputs, waiting, longer);
+    }
+
+    fn due_writes(&mut self, most: usize) -> (Vec<(u32, u32)>, u32) {
+        self.due_writes(most)
+    }
+
+    fn is_wild(&self) -> bool {
+        self.is_wild()
+    }
+
+    fn writes(&self, axis: usize) -> bool {
+        self.writes(axis)
+    }
+}
+
+/// The pins and the driver of a stage with these axes.
+pub(super) fn pins(stage: &Component, axes: &[String], seed: u64) -> Box<dyn BesideALine> {
+    Box::new(StageRandom::new(stage, axes, seed))
+}
+
 /// An endless conversation of a driver with a stage, and everything at the pins.
 pub struct LinkedStageRandom {
     rng: Xoshiro256PlusPlus,
-    pins: StageRandom,
+    pins: Box<dyn BesideALine>,
     stage_inputs: Vec<u64>,
     stage_outputs: Vec<u64>,
     /// Place of `avs_readdata` among the stage's outputs.
@@ -67,8 +103,8 @@ pub struct LinkedStageRandom {
     next_read: usize,
     /// Per axis, offsets of the words that show its motion.
     motion: Vec<Vec<u16>>,
-    /// Per axis, offsets of the registers that read back taps, then of those for settings: address, command, word.
-    read_back: Vec<[[u16; 3]; 2]>,
+    /// Per axis, offsets of the registers that read back taps, then of those for settings, if it has any: address, command, word.
+    read_back: Vec<Vec<[u16; 3]>>,
     words: u16,
     is_spi: bool,
     /// Clocks for which a level stays.
@@ -94,8 +130,8 @@ pub struct LinkedStageRandom {
 impl LinkedStageRandom {
     /// Creates the host of a stage with these axes, at a clock in Hz; `with_opening` begins with the directed requests of a
     /// bridge's own bench, and with a write and a read of every register. Equal seeds give equal inputs.
-    pub fn new(
-        stage: &Component,
+    pub(crate) fn new(
+        (stage, pins): (&Component, Box<dyn BesideALine>),
         axes: &[String],
         (config, clock_hz): (&BridgeConfig, f64),
         with_opening: bool,
@@ -121,7 +157,7 @@ impl LinkedStageRandom {
         let frames = frames.into_iter().map(|bytes| Frame { bytes, waiting: 0 });
         Self {
             rng,
-            pins: StageRandom::new(stage, axes, seed),
+            pins,
             stage_inputs: vec![0; count(Direction::Input)],
             stage_outputs: vec![0; count(Direction::Output)],
             read_data: outputs.position(|port: &Port| port.name == "avs_readdata").unwrap_or(0),
@@ -238,7 +274,7 @@ impl LinkedStageRandom {
     /// Reads back a tap or a setting, unless the driver is writing such words; the read of the word follows.
     fn read_back(&mut self) -> Request {
         let axis = self.rng.random_range(0..self.read_back.len());
-        let kind = self.rng.random_range(0..2);
+        let kind = self.rng.random_range(0..self.read_back[axis].len());
         let [address, command, word] = self.read_back[axis][kind];
         if self.pins.writes(axis) {
             return Request::Read {
@@ -365,7 +401,7 @@ fn all_registers(map: &RegisterMap, rng: &mut Xoshiro256PlusPlus) -> Vec<Vec<u8>
 }
 
 fn motion(map: &RegisterMap, axis: &str) -> Vec<u16> {
-    let names = [
+    let of_stage = [
         "status",
         "shaped_position",
         "shaped_velocity",
@@ -373,16 +409,22 @@ fn motion(map: &RegisterMap, axis: &str) -> Vec<u16> {
         "error",
         "duty",
     ];
+    let of_inline = ["status", "input_steps", "given_steps", "owed_steps"];
+    let has_input = map.register(&format!("{axis}_input_steps")).is_some();
+    let names: &[&str] = if has_input { &of_inline } else { &of_stage };
     names
         .iter()
         .map(|name| offset(map, &format!("{axis}_{name}")))
         .collect()
 }
 
-fn read_back(map: &RegisterMap, axis: &str) -> [[u16; 3]; 2] {
+fn read_back(map: &RegisterMap, axis: &str) -> Vec<[u16; 3]> {
     let taps = ["tap_address", "tap_read", "tap_loaded"];
     let settings = ["setting_address", "setting_read", "setting_loaded"];
-    [taps, settings].map(|names| names.map(|name| offset(map, &format!("{axis}_{name}"))))
+    let has_input = map.register(&format!("{axis}_input_steps")).is_some();
+    let kinds: &[[&str; 3]] = if has_input { &[taps] } else { &[taps, settings] };
+    let of = |names: &[&str; 3]| names.map(|name| offset(map, &format!("{axis}_{name}")));
+    kinds.iter().map(of).collect()
 }
 
 impl Stimuli for LinkedStageRandom {

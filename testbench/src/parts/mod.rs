@@ -9,6 +9,7 @@ pub use self::stimuli::PartRandom;
 
 use posicast_blocks::component::ComponentPart as Model;
 use posicast_blocks::divider::DividerConfig;
+use posicast_blocks::inline_group::InlineGroupConfig;
 use posicast_blocks::schedule::ScheduleConfig;
 use posicast_blocks::shaper::MOTION_WORD_BITS;
 use posicast_blocks::sliding_mode::Settings;
@@ -104,6 +105,15 @@ pub(crate) const GROUP: RegistryRow = RegistryRow {
     mutants: trials::GROUP,
     ..RegistryRow::EMPTY
 };
+/// Sizes of the group that are compared and proven.
+const INLINE_GROUPS: [InlineGroupConfig; 3] = [
+    InlineGroupConfig::without_registers(2),
+    InlineGroupConfig::without_registers(4),
+    InlineGroupConfig {
+        axes: 2,
+        with_registers: true,
+    },
+];
 pub(crate) const INLINE_GROUP: RegistryRow = RegistryRow {
     name: "inline_group",
     benches: |sizes| {
@@ -111,14 +121,19 @@ pub(crate) const INLINE_GROUP: RegistryRow = RegistryRow {
             return Ok(Vec::new());
         };
         let axes = shaper.config().axes.len();
-        Ok(one(PartBlock::new(SmallPart::InlineGroup(axes), &sizes.prefix)))
+        let config = InlineGroupConfig::without_registers(axes);
+        Ok(one(PartBlock::new(SmallPart::InlineGroup(config), &sizes.prefix)))
     },
-    small: || Ok(small(PartBlock::new(SmallPart::InlineGroup(2), ""), "2 axes")),
-    proofs: || [2, 4].map(proofs::inline_group).into_iter().collect(),
+    small: || {
+        let part = SmallPart::InlineGroup(InlineGroupConfig::without_registers(2));
+        Ok(small(PartBlock::new(part, ""), "2 axes"))
+    },
+    proofs: || INLINE_GROUPS.map(proofs::inline_group).into_iter().collect(),
     trials: || {
         Ok(vec![
-            trials::trial(SmallPart::InlineGroup(2), "2 axes"),
-            trials::trial(SmallPart::InlineGroup(4), "4 axes"),
+            trials::trial(SmallPart::InlineGroup(INLINE_GROUPS[0]), "2 axes"),
+            trials::trial(SmallPart::InlineGroup(INLINE_GROUPS[1]), "4 axes"),
+            trials::trial(SmallPart::InlineGroup(INLINE_GROUPS[2]), "2 axes with registers"),
         ])
     },
     mutants: trials::INLINE_GROUP,
@@ -178,8 +193,8 @@ pub enum SmallPart {
     DividerShare(usize),
     /// `group`: couples this many axes.
     Group(usize),
-    /// `inline_group`: what this many axes of the inline shaper share.
-    InlineGroup(usize),
+    /// `inline_group`: what the axes of the inline shaper share.
+    InlineGroup(InlineGroupConfig),
     /// `lasting_deviation`: passes a deviation on once it has lasted.
     LastingDeviation,
     /// `time_base`: makes ticks of this length.
@@ -214,7 +229,7 @@ impl PartBlock {
             }
             SmallPart::DividerShare(channels) => (Model::DividerShare(channels), format!("{channels} channels")),
             SmallPart::Group(axes) => (Model::Group(axes), format!("{axes} axes")),
-            SmallPart::InlineGroup(axes) => (Model::InlineGroup(axes), format!("{axes} axes")),
+            SmallPart::InlineGroup(config) => (Model::InlineGroup(config), proofs::group_size(config)),
             SmallPart::LastingDeviation => (Model::LastingDeviation, "alone".to_owned()),
             SmallPart::TimeBase(config) => {
                 let clocks = format!("{} clocks per tick", config.tick_clocks());
@@ -262,7 +277,7 @@ impl Block for PartBlock {
             SmallPart::Schedule(config) => schedule::emit(config, prefix),
             SmallPart::DividerShare(channels) => divider_share::emit(*channels, prefix),
             SmallPart::Group(axes) => group::emit(*axes, prefix),
-            SmallPart::InlineGroup(axes) => inline_group::emit(*axes, prefix),
+            SmallPart::InlineGroup(config) => inline_group::emit(*config, prefix),
             SmallPart::LastingDeviation => lasting_deviation::emit(prefix),
             SmallPart::TimeBase(config) => time_base::emit(config, prefix),
             SmallPart::SampleSelect { word_bits, channels } => sample_select::emit(*word_bits, *channels, prefix),
@@ -276,7 +291,7 @@ impl Block for PartBlock {
             SmallPart::Schedule(config) => schedule::name(config, prefix),
             SmallPart::DividerShare(channels) => divider_share::name(*channels, prefix),
             SmallPart::Group(axes) => group::name(*axes, prefix),
-            SmallPart::InlineGroup(axes) => inline_group::name(*axes, prefix),
+            SmallPart::InlineGroup(config) => inline_group::name(*config, prefix),
             SmallPart::LastingDeviation => lasting_deviation::name(prefix),
             SmallPart::TimeBase(config) => time_base::name(config, prefix),
             SmallPart::SampleSelect { word_bits, channels } => sample_select::name(*word_bits, *channels, prefix),
@@ -293,7 +308,7 @@ impl Block for PartBlock {
             SmallPart::Schedule(config) => schedule::simulate(config),
             SmallPart::DividerShare(channels) => divider_share::simulate(*channels),
             SmallPart::Group(axes) => group::simulate(*axes),
-            SmallPart::InlineGroup(axes) => inline_group::simulate(*axes),
+            SmallPart::InlineGroup(config) => inline_group::simulate(*config),
             SmallPart::LastingDeviation => lasting_deviation::simulate(),
             SmallPart::TimeBase(config) => time_base::simulate(config),
             SmallPart::SampleSelect { word_bits, channels } => sample_select::simulate(*word_bits, *channels),

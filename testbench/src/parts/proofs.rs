@@ -1,11 +1,11 @@
 //! The proofs of the small blocks that connect others.
 
 use posicast_blocks::divider::DividerConfig;
+use posicast_blocks::inline_group::InlineGroupConfig;
 use posicast_blocks::schedule::ScheduleConfig;
 use posicast_blocks::{
-    divider_share as share_model, group as group_model, inline_group as inline_model,
-    lasting_deviation as lasting_model, sample_select as select_model, schedule as schedule_model,
-    setting_banks as banks_model, time_base as time_model,
+    divider_share as share_model, group as group_model, lasting_deviation as lasting_model,
+    sample_select as select_model, schedule as schedule_model, setting_banks as banks_model, time_base as time_model,
 };
 use posicast_hdl::{
     divider_share, group, inline_group, lasting_deviation, sample_select, schedule, setting_banks, time_base,
@@ -35,7 +35,14 @@ pub(crate) fn group(axes: usize) -> Result<Task, Error> {
     Ok(Task::new("group", &format!("{axes} axes"), Engine::Pdr, block).properties(&macros, include_str!("group.sv")))
 }
 
-pub(crate) fn inline_group(axes: usize) -> Result<Task, Error> {
+/// The size of an inline group in words.
+pub(crate) fn group_size(config: InlineGroupConfig) -> String {
+    let registers = if config.with_registers { " with registers" } else { "" };
+    format!("{} axes{registers}", config.axes)
+}
+
+pub(crate) fn inline_group(config: InlineGroupConfig) -> Result<Task, Error> {
+    let axes = config.axes;
     let list = |name: &str| {
         let lines: Vec<String> = (0..axes).rev().map(|axis| format!("{name}_{axis}")).collect();
         format!("{{{}}}", lines.join(", "))
@@ -44,8 +51,8 @@ pub(crate) fn inline_group(axes: usize) -> Result<Task, Error> {
         ("AXIS_SETTLED", list("axis_settled")),
         ("AXIS_FAULT", list("axis_fault")),
     ];
-    let block = (inline_group::emit(axes, "")?, inline_model::ports(axes));
-    let task = Task::new("inline_group", &format!("{axes} axes"), Engine::Pdr, block);
+    let block = (inline_group::emit(config, "")?, config.ports());
+    let task = Task::new("inline_group", &group_size(config), Engine::Pdr, block);
     Ok(task.properties(&macros, include_str!("inline_group.sv")))
 }
 

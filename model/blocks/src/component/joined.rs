@@ -11,7 +11,7 @@ use crate::error_table::{ErrorTable, ErrorTableConfig};
 use crate::excitation::Excitation;
 use crate::group::Group;
 use crate::inline_axis::{InlineAxis, InlineAxisConfig};
-use crate::inline_group::InlineGroup;
+use crate::inline_group::{InlineGroup, InlineGroupConfig};
 use crate::lasting_deviation::LastingDeviation;
 use crate::linear_scale::LinearScale;
 use crate::pulse_counter::PulseCounter;
@@ -81,8 +81,8 @@ pub enum ComponentPart {
     Group(usize),
     /// An axis of the inline shaper: samples the command, and selects what the steps follow.
     InlineAxis(InlineAxisConfig),
-    /// What this many axes of the inline shaper share.
-    InlineGroup(usize),
+    /// What the axes of the inline shaper share.
+    InlineGroup(InlineGroupConfig),
     /// Blocks joined to one.
     Joined(Box<JoinedBlocks>),
 }
@@ -161,7 +161,7 @@ impl ComponentPart {
             Self::Schedule(config) => Box::new(Schedule::new(config)),
             Self::Group(axes) => Box::new(Group::new(*axes)),
             Self::InlineAxis(config) => Box::new(InlineAxis::new(config)),
-            Self::InlineGroup(axes) => Box::new(InlineGroup::new(*axes)),
+            Self::InlineGroup(config) => Box::new(InlineGroup::new(*config)),
             Self::Joined(joined) => Box::new(joined.model(seed)),
         }
     }

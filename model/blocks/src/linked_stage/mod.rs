@@ -1,4 +1,4 @@
-//! A stage whose registers a host operates through a line: the stage with its bridge.
+//! A stage, or an inline shaper, whose registers a host operates through a line: the component with its bridge.
 //!
 //! ```text
 //!                ┌─────────────┐ avm_*      avs_* ┌───────┐
@@ -16,6 +16,8 @@
 //! |---|---|
 //! | `rst`, and `uart_rx`, `uart_tx` or `spi_sck`, `spi_cs_n`, `spi_mosi`, `spi_miso` | the bridge's |
 //! | `irq`, all pins | the stage's; not its bus |
+//!
+//! An inline shaper with registers takes the place of the stage: [`Component::inline_shaper`].
 
 mod bridge;
 

@@ -127,7 +127,7 @@ pub(super) fn with_the_drive_off() -> Access {
 }
 
 /// The register with the axis's name as prefix, in the axis's window.
-fn axis_register(mut register: Register, axis: &str, base: u32) -> Register {
+pub(crate) fn axis_register(mut register: Register, axis: &str, base: u32) -> Register {
     let named = |name: &mut String| *name = format!("{axis}_{name}");
     named(&mut register.name);
     register.offset += base;
@@ -185,8 +185,16 @@ fn interrupts(config: &StageConfig) -> Vec<Field> {
     fields
 }
 
-/// Names of the ports that these registers drive, and of those that they read; interrupts read more.
+/// Names of the ports that these registers drive, and of those that they and the interrupts of a stage read.
 pub(super) fn hardware(registers: &[Register]) -> (Vec<String>, Vec<String>) {
+    let (driven, mut read) = driven_and_read(registers);
+    let more = AXIS_INTERRUPTS.iter().map(|(name, _)| (*name).to_owned());
+    read.extend(more.filter(|name| !read.contains(name)).collect::<Vec<_>>());
+    (driven, read)
+}
+
+/// Names of the ports that these registers drive, and of those that they read; interrupts read more.
+pub(crate) fn driven_and_read(registers: &[Register]) -> (Vec<String>, Vec<String>) {
     let (mut driven, mut read) = (Vec::new(), Vec::new());
     for register in registers {
         match &register.access {
@@ -201,8 +209,6 @@ pub(super) fn hardware(registers: &[Register]) -> (Vec<String>, Vec<String>) {
             _ => {}
         }
     }
-    let more = AXIS_INTERRUPTS.iter().map(|(name, _)| (*name).to_owned());
-    read.extend(more.filter(|name| !read.contains(name)).collect::<Vec<_>>());
     (driven, read)
 }
 

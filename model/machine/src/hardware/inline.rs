@@ -4,6 +4,7 @@ use super::axis::of_axis;
 use super::{HardwareError, NAME_KEY, SAMPLE_KEY};
 use crate::machine_file::{AxisSection, BeyondLimits, ClockSection, InputSection, Machine, StepsSection};
 use crate::plan::MachineDesign;
+use posicast_blocks::component::Component;
 use posicast_blocks::divider::DividerConfig;
 use posicast_blocks::inline_axis::{INLINE_FRACTION, InlineAxisConfig, MOST_TICK_STEPS};
 use posicast_blocks::inline_shaper::{INLINE_MOTION, InlineConfig, InlineError, InlineShaper, InlineShaperAxis};
@@ -21,8 +22,10 @@ const SHAPER_KEY: &str = "axis.shaper";
 /// An inline shaper, with the figures of its axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InlineHardware {
-    /// The blocks, joined.
+    /// The blocks, joined, without registers.
     pub shaper: InlineShaper,
+    /// The same behind registers, if the machine file has a `[link]`: then this is what is built.
+    pub component: Option<Component>,
     /// The figures of each axis.
     pub axes: Vec<InlineFigures>,
 }
@@ -80,14 +83,26 @@ pub(super) fn inline(machine: &Machine, design: &MachineDesign) -> Result<Option
     }
     let config = InlineConfig { tick, axes };
     let shaper = InlineShaper::new(&config).map_err(|error| to_blame(&error))?;
-    let figures = config.axes.iter().map(|axis| figures(&config, axis, clock)).collect();
-    Ok(Some(InlineHardware { shaper, axes: figures }))
+    let component = machine
+        .link
+        .map(|link| Component::inline_shaper(&config, Some(link.machine_crc)));
+    let component = component.transpose().map_err(|error| to_blame(&error))?;
+    let built = match component {
+        Some(_) => config.for_any_table(),
+        None => config,
+    };
+    let figures = built.axes.iter().map(|axis| figures(&built, axis, clock)).collect();
+    Ok(Some(InlineHardware {
+        shaper,
+        component,
+        axes: figures,
+    }))
 }
 
 fn to_blame(error: &InlineError) -> HardwareError {
     let key = match error {
         InlineError::Axes(_) => "axis",
-        InlineError::Composition(_) => NAME_KEY,
+        InlineError::Composition(_) | InlineError::Map(_) | InlineError::Component(_) => NAME_KEY,
         InlineError::Shaper { .. } => SHAPER_KEY,
         _ => SAMPLE_KEY,
     };

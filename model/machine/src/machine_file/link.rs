@@ -1,4 +1,4 @@
-//! `[link]`: the line, serial or SPI, through which a host reads and writes the registers of the stage.
+//! `[link]`: the line, serial or SPI, through which a host reads and writes the registers of the stage or the inline shaper.
 
 use super::ClockSection;
 use super::hint::written;
@@ -34,8 +34,8 @@ pub struct LinkSection {
     pub line: LinkLine,
     /// Time-out in s: the bridge drops a frame whose next byte takes this long. Default 0.01.
     pub timeout_s: f64,
-    /// CRC-32 (IEEE 802.3, as in `zlib`) of the machine file, followed by the files beside it that it names, each once. The stage has it
-    /// in a register, so that a host can tell whether it has the machine file of the hardware.
+    /// CRC-32 (IEEE 802.3, as in `zlib`) of the machine file, followed by the files beside it that it names, each once. The stage, or
+    /// the inline shaper, has it in a register, so that a host can tell whether it has the machine file of the hardware.
     pub machine_crc: u32,
 }
 

@@ -50,7 +50,7 @@ pub(super) const KEYS: &[Key] = &[
         "Settings of all axes; even empty, it makes their delays equal.",
     ),
     Key::new("link", Values::Table(link::KEYS), "Serial line or SPI to a host.")
-        .rule("needs encoder, PWM, drive and controller on every axis"),
+        .rule("needs encoder, PWM, drive and controller on every axis, or `[axis.input]`"),
 ];
 
 const CLOCK_KEYS: &[Key] = &[
@@ -158,13 +158,6 @@ fn check_inputs(root: &Table<'_, '_>, axes: &[AxisSection]) {
             format!("axis {} with [axis.input] and axis {} without", with.name, without.name),
             "[axis.input] on every axis, whose commands come as step pulses, or on none",
             format!("add [axis.input] to axis {}, or make two machine files", without.name),
-        );
-    } else if with.is_some() && root.has("link") {
-        root.contradiction(
-            "link",
-            "[link] beside [axis.input]",
-            "[link] on a machine whose commands come from a host: an inline shaper has no registers",
-            "remove [link]",
         );
     }
 }

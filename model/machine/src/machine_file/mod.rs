@@ -175,7 +175,7 @@ pub struct Machine {
     pub axes: Vec<AxisSection>,
     /// `[stage]`: settings of all axes together.
     pub stage: Option<StageSection>,
-    /// `[link]`: the line, serial or SPI, to the registers of the stage.
+    /// `[link]`: the line, serial or SPI, to the registers of the stage or the inline shaper.
     pub link: Option<LinkSection>,
 }
 

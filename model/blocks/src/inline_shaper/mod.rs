@@ -1,5 +1,5 @@
 //! The inline shaper: one to four axes between a controller with step outputs and drives with step inputs, without
-//! registers and without software.
+//! software. [`InlineShaper`] has no registers; [`Component::inline_shaper`] has them, for a host that looks on.
 //!
 //! ```text
 //! tick ─► time_base, schedule, inline_group                                   one of each
@@ -13,13 +13,20 @@
 //!
 //! Every axis shapes modulo 2^24 steps, so an axis may turn without end. The step generator takes only changes of the
 //! position, so nothing is lost at the wrap.
+//!
+//! With registers an axis is settled only after the longest delay of any table that a host can load; all else at the pins is as
+//! without them. No register stops an axis, and none starts it.
 
-use crate::component::{ComponentPart, JoinedBlocks, Wiring};
+mod registers;
+
+use crate::component::{Component, ComponentError, ComponentPart, JoinedBlocks, Wiring};
 use crate::composition::{Composed, CompositionError, Part};
 use crate::divider::DividerConfig;
 use crate::group::MOST_AXES;
 use crate::inline_axis::{INLINE_FRACTION, InlineAxisConfig, LATENCY_CLOCKS};
+use crate::inline_group::InlineGroupConfig;
 use crate::pulse_counter::FILTER_CLOCKS_MAX;
+use crate::registers::{MapError, RegisterMap};
 use crate::schedule::{ScheduleConfig, ScheduleConfigError};
 use crate::shaper::{ShaperConfig, ShaperMotion};
 use crate::step_generator::{self, StepGeneratorConfig, StepMode};
@@ -29,6 +36,9 @@ pub const INLINE_MOTION: ShaperMotion = ShaperMotion {
     channels: 1,
     modulo: true,
 };
+
+/// Name of the component with registers.
+pub const INLINE_SHAPER: &str = "inline_shaper";
 
 /// Clocks from a pin to the count, in addition to the filter: a flip-flop, and the pulse counter's.
 const INPUT_CLOCKS: u32 = 1 + 4;
@@ -109,6 +119,12 @@ pub enum InlineError {
     /// The schedule block cannot be built.
     #[error(transparent)]
     ScheduleBlock(#[from] ScheduleConfigError),
+    /// The register map has an error.
+    #[error("the registers of the inline shaper clash, rename an axis: {0}")]
+    Map(#[from] MapError),
+    /// The component cannot be made.
+    #[error("the ports of the inline shaper clash, rename an axis: {0}")]
+    Component(#[from] ComponentError),
     /// The wiring has an error.
     #[error("the ports of the inline shaper clash, rename an axis: {0}")]
     Composition(#[from] CompositionError),
@@ -193,25 +209,9 @@ impl InlineShaper {
     /// [`InlineError`] for no axis or more than four, for ticks that are too short, and for names that clash.
     pub fn new(config: &InlineConfig) -> Result<Self, InlineError> {
         config.check()?;
-        let mut blocks = vec![
-            ComponentPart::TimeBase(config.tick),
-            ComponentPart::Schedule(ScheduleConfig::new(config.control_clocks())?),
-            ComponentPart::InlineGroup(config.axes.len()),
-        ];
-        for axis in &config.axes {
-            blocks.push(ComponentPart::Joined(Box::new(join(axis)?)));
-        }
-        let blocks = blocks.into_iter().map(|block| (block.name().to_owned(), block));
-        let wiring = Wiring {
-            part: Box::new(|block, part| wire(config, block, part)),
-            inputs: pins(config, &SHARED_INPUTS, |axis| input_pins(axis).to_vec()),
-            outputs: pins(config, &SHARED_OUTPUTS, |axis| {
-                let lines = axis.steps.mode().line_names().map(str::to_owned);
-                [lines.to_vec(), CAUSES.map(str::to_owned).to_vec()].concat()
-            }),
-        };
+        let blocks = blocks(config, Registers::Without)?;
         Ok(Self {
-            joined: JoinedBlocks::new("inline_shaper", blocks.collect(), wiring)?,
+            joined: JoinedBlocks::new(INLINE_SHAPER, blocks, wiring(config))?,
             config: config.clone(),
         })
     }
@@ -232,6 +232,76 @@ impl InlineShaper {
     }
 }
 
+/// Whether an inline shaper has registers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Registers {
+    With,
+    Without,
+}
+
+impl Component {
+    /// The inline shaper behind registers, for a host that looks on: status, counts, tables, and a request for no shaping.
+    /// `machine_crc` identifies the machine file; `None` leaves out its register.
+    ///
+    /// # Errors
+    /// [`InlineError`] as [`InlineShaper::new`], and for names of registers that clash.
+    pub fn inline_shaper(config: &InlineConfig, machine_crc: Option<u32>) -> Result<Self, InlineError> {
+        config.check()?;
+        let config = config.for_any_table();
+        let map = RegisterMap::new(registers::description(&config, machine_crc))?;
+        let blocks = blocks(&config, Registers::With)?;
+        let mut wiring = wiring(&config);
+        // The bus of the component has the reset.
+        wiring.inputs.retain(|pin| pin != "rst");
+        Ok(Self::joined(map, INLINE_SHAPER, blocks, wiring)?)
+    }
+}
+
+impl InlineConfig {
+    /// The same, where an axis is settled after the longest delay that the shaper's memory allows: a table that a host loads may
+    /// have it.
+    #[must_use]
+    pub fn for_any_table(&self) -> Self {
+        let mut config = self.clone();
+        for axis in &mut config.axes {
+            let ticks = (1_u64 << axis.shaper.ring_address_bits()) - 1;
+            axis.follower = axis.follower.settles_after(ticks);
+        }
+        config
+    }
+}
+
+/// The blocks of an inline shaper, each with the name of its part.
+fn blocks(config: &InlineConfig, registers: Registers) -> Result<Vec<(String, ComponentPart)>, InlineError> {
+    let mut blocks = vec![
+        ComponentPart::TimeBase(config.tick),
+        ComponentPart::Schedule(ScheduleConfig::new(config.control_clocks())?),
+        ComponentPart::InlineGroup(InlineGroupConfig {
+            axes: config.axes.len(),
+            with_registers: registers == Registers::With,
+        }),
+    ];
+    for axis in &config.axes {
+        blocks.push(ComponentPart::Joined(Box::new(join(axis, registers)?)));
+    }
+    Ok(blocks
+        .into_iter()
+        .map(|block| (block.name().to_owned(), block))
+        .collect())
+}
+
+/// The pins of an inline shaper, and the connections of its parts.
+fn wiring(config: &InlineConfig) -> Wiring<'_> {
+    Wiring {
+        part: Box::new(|block, part| wire(config, block, part)),
+        inputs: pins(config, &SHARED_INPUTS, |axis| input_pins(axis).to_vec()),
+        outputs: pins(config, &SHARED_OUTPUTS, |axis| {
+            let lines = axis.steps.mode().line_names().map(str::to_owned);
+            [lines.to_vec(), CAUSES.map(str::to_owned).to_vec()].concat()
+        }),
+    }
+}
+
 /// The input pins of an axis: the lines of the command.
 fn input_pins(axis: &InlineShaperAxis) -> [String; 2] {
     axis.input.line_names().map(|line| format!("{line}_in"))
@@ -248,11 +318,14 @@ fn pins(config: &InlineConfig, shared: &[&str], of_axis: fn(&InlineShaperAxis) -
 
 fn wire(config: &InlineConfig, block: &ComponentPart, part: Part) -> Part {
     match block {
-        ComponentPart::InlineGroup(_) => config.axes.iter().enumerate().fold(part, |part, (index, axis)| {
-            ["settled", "fault"].iter().fold(part, |part, port| {
-                part.on(&format!("axis_{port}_{index}"), &format!("{}_{port}", axis.name))
+        ComponentPart::InlineGroup(group) => {
+            let part = (0..group.requests()).fold(part, |part, _| part.on("bypass_request_0", "bypass_request"));
+            config.axes.iter().enumerate().fold(part, |part, (index, axis)| {
+                ["settled", "fault"].iter().fold(part, |part, port| {
+                    part.on(&format!("axis_{port}_{index}"), &format!("{}_{port}", axis.name))
+                })
             })
-        }),
+        }
         ComponentPart::Joined(joined) => {
             let ports = part.ports().to_vec();
             let own = ports.iter().filter(|port| !SHARED_NETS.contains(&port.name.as_str()));
@@ -264,8 +337,35 @@ fn wire(config: &InlineConfig, block: &ComponentPart, part: Part) -> Part {
     }
 }
 
+/// Names of the nets of an axis that only registers read.
+struct Counts {
+    input: &'static str,
+    given: &'static str,
+    owed: &'static str,
+}
+
 /// Joins the blocks of an axis.
-fn join(axis: &InlineShaperAxis) -> Result<JoinedBlocks, CompositionError> {
+fn join(axis: &InlineShaperAxis, registers: Registers) -> Result<JoinedBlocks, CompositionError> {
+    // Without registers the nets have the names of the ports.
+    let (counts, driven, read) = match registers {
+        Registers::Without => {
+            let counts = Counts {
+                input: "count",
+                given: "given",
+                owed: "owed",
+            };
+            (counts, Vec::new(), Vec::new())
+        }
+        Registers::With => {
+            let counts = Counts {
+                input: registers::INPUT_STEPS,
+                given: registers::GIVEN_STEPS,
+                owed: registers::OWED_STEPS,
+            };
+            let (driven, read) = registers::hardware(axis);
+            (counts, driven, read)
+        }
+    };
     let blocks = [
         ComponentPart::InlineAxis(axis.follower),
         ComponentPart::PulseCounter,
@@ -276,6 +376,9 @@ fn join(axis: &InlineShaperAxis) -> Result<JoinedBlocks, CompositionError> {
     let [pin_a, pin_b] = input_pins(axis);
     let [line_a, line_b] = axis.steps.mode().line_names();
     let owned = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
+    let outputs = [owned(&[line_a, line_b, "settled", "fault"]), owned(&CAUSES)].concat();
+    let read: Vec<String> = read.into_iter().filter(|net| !outputs.contains(net)).collect();
+    let outputs = outputs.into_iter();
     let wiring = Wiring {
         part: Box::new(|block, part| match block {
             ComponentPart::InlineAxis(_) => part
@@ -283,20 +386,26 @@ fn join(axis: &InlineShaperAxis) -> Result<JoinedBlocks, CompositionError> {
                 .on("pin_b", &pin_b)
                 .on("unshaped", "bypassed")
                 .on("a", "counter_a")
-                .on("b", "counter_b"),
-            ComponentPart::PulseCounter => counter(axis, part),
-            ComponentPart::Shaper(_) => shaper(part),
+                .on("b", "counter_b")
+                .on("count", counts.input)
+                .on("given", counts.given),
+            ComponentPart::PulseCounter => counter(axis, part).on("count", counts.input),
+            ComponentPart::Shaper(_) => match registers {
+                Registers::Without => shaper(part),
+                Registers::With => of_shaper(part).on("bank", "table_bank").on("refused", "table_refused"),
+            },
             ComponentPart::StepGenerator(_) => part
                 .on("enable", "follow")
                 .on("tick", "control")
                 .tied("clear_flags", 1)
                 .on("a", line_a)
                 .on("b", line_b)
-                .on("count", "given"),
+                .on("count", counts.given)
+                .on("owed", counts.owed),
             _ => part,
         }),
-        inputs: [owned(&SHARED_NETS), vec![pin_a.clone(), pin_b.clone()]].concat(),
-        outputs: [owned(&[line_a, line_b, "settled", "fault"]), owned(&CAUSES)].concat(),
+        inputs: [owned(&SHARED_NETS), vec![pin_a.clone(), pin_b.clone()], driven].concat(),
+        outputs: outputs.chain(read).collect(),
     };
     JoinedBlocks::new(&axis.name, blocks.to_vec(), wiring)
 }
@@ -347,6 +456,9 @@ fn shaper(part: Part) -> Part {
         "swap_bank",
         "swap_how",
     ];
-    let part = tied.iter().fold(part, |part, port| part.tied(port, 0));
+    of_shaper(tied.iter().fold(part, |part, port| part.tied(port, 0)))
+}
+
+fn of_shaper(part: Part) -> Part {
     part.on("x_0", "x").on("y_0", "shaped").tied("clear_flags", 1)
 }
