@@ -1,5 +1,6 @@
 //! The bench of `inline_shaper`: all axes of an inline shaper, with a controller's step pulses at the pins.
 
+mod proofs;
 mod reached;
 pub(crate) mod stimuli;
 mod trials;
@@ -37,6 +38,7 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
             |shaper: &InlineShaper| -> Box<dyn Block> { Box::new(InlineShaperBlock::new(shaper.clone(), TOP, TOP)) };
         Ok(shapers.map(bench).collect())
     },
+    proofs: proofs::tasks,
     trials: trials::all,
     mutants: trials::MUTANTS,
     ..RegistryRow::EMPTY

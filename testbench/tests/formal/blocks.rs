@@ -222,6 +222,21 @@ fn formal_a_limit_of_the_input_that_is_one_too_high_is_found() {
 }
 
 #[test]
+fn formal_steps_out_that_the_axis_does_not_count_are_found() {
+    fails("inline_shaper", "(given)", "(32'd0)", "");
+}
+
+#[test]
+fn formal_steps_in_that_are_read_from_the_wrong_line_are_found() {
+    fails(
+        "inline_shaper",
+        "rise_a = a & edge_a",
+        "rise_a = b & edge_a",
+        "counts_in",
+    );
+}
+
+#[test]
 fn formal_shaping_that_changes_in_motion_is_found() {
     fails(
         "inline_group",
