@@ -21,13 +21,14 @@ use std::time::Duration;
 pub(crate) use self::inline::Document as InlineStatusDocument;
 pub(crate) use self::text::Document as StatusDocument;
 
-/// Operate a stage through its serial line, SPI or a network: show its state, move, record, load a shaper; of an inline shaper show the
-/// state, switch the shaping, load a shaper
+/// Operate a stage through its serial line, SPI or a network: show its state, move, home, record, load a shaper; of an inline shaper
+/// show the state, switch the shaping, load a shaper
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   posicast host /dev/ttyUSB0 status --machine xy_stage/machine.toml
   posicast host /dev/ttyUSB0 move x=0.04,y=-0.02 --machine xy_stage/machine.toml
+  posicast host /dev/ttyUSB0 home z --machine printer/machine.toml
   posicast host /dev/ttyUSB0 trace x -o x.csv --shake 60 --machine xy_stage/machine.toml
   posicast host /dev/ttyUSB0 load x new.toml --machine xy_stage/machine.toml
   posicast host /dev/ttyUSB0 bypass on --machine router/machine.toml
@@ -69,6 +70,18 @@ enum Action {
         #[command(flatten)]
         faults: Faults,
         /// Leave the axes on at the end. An axis with watchdog_s then stops by itself, because nobody kicks its watchdog
+        #[arg(long)]
+        hold: bool,
+        #[command(flatten)]
+        line: Line,
+    },
+    /// Switch on, home by the probe, and switch off; needs [axis.probe]
+    Home {
+        /// Name of the axis
+        axis: String,
+        #[command(flatten)]
+        faults: Faults,
+        /// Leave the axis on at the end. With watchdog_s it then stops by itself, because nobody kicks its watchdog
         #[arg(long)]
         hold: bool,
         #[command(flatten)]
@@ -167,6 +180,7 @@ impl Action {
         match self {
             Self::Status { line, .. }
             | Self::Move { line, .. }
+            | Self::Home { line, .. }
             | Self::Load { line, .. }
             | Self::Table { line, .. }
             | Self::Bypass { line, .. } => line,
@@ -216,6 +230,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             hold,
             ..
         } => actions::move_axes(&machine, (distance, speed.as_ref()), [faults.clear_faults, *hold], open),
+        Action::Home { axis, faults, hold, .. } => {
+            actions::home(&machine, (axis, path), [faults.clear_faults, *hold], open)
+        }
         Action::Trace(trace) => actions::trace(&machine, trace, open),
         Action::Load { axis, from, .. } => {
             let load = |index, table: &TapTable| Ok(open()?.load_table(index, table));
@@ -276,7 +293,11 @@ fn failure(error: HostError) -> Failure {
             | LinkError::Line(_),
         ) => Failure::missing_tool(error),
         HostError::Fault { .. } => Failure::Check(format!("{error} (--clear-faults)")),
-        HostError::Late { .. } | HostError::Refused { .. } | HostError::Standstill | HostError::Bypass { .. } => {
+        HostError::Late { .. }
+        | HostError::Refused { .. }
+        | HostError::Probe { .. }
+        | HostError::Standstill
+        | HostError::Bypass { .. } => {
             Failure::Check(error.to_string())
         }
         _ => Failure::because(error),

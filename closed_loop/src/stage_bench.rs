@@ -86,7 +86,7 @@ pub struct AxisSample {
 
 /// Indices of an axis's pins among the stage's ports.
 struct Places {
-    /// Lines A, B and index of the encoder, as far as the axis has them.
+    /// Lines A, B and index of the encoder, or a probe, as far as the axis has them.
     encoder: [Option<usize>; 3],
     /// Lines A and B of the scale.
     scale: Option<[usize; 2]>,
@@ -268,7 +268,7 @@ impl StageBench {
             };
             let [n0, n1, n2] = RECORDED.map(net);
             places.push(Places {
-                encoder: ["a", "b", "z"].map(input),
+                encoder: [input("a"), input("b"), input("z").or(input("probe"))],
                 scale: scale[0].zip(scale[1]).map(<[usize; 2]>::from),
                 drive: pins,
                 recorded: [n0?, n1?, n2?],

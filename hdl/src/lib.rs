@@ -24,6 +24,7 @@
 //! | [`step_generator`] | the step generator: the position of every tick to the pulses of a drive with step inputs |
 //! | [`inline_axis`], [`inline_group`] | an axis of the inline shaper, and what its axes share |
 //! | [`inline_shaper`] | the inline shaper: from the steps of a controller to shaped steps for the drives |
+//! | [`probe_line`] | the line of a probe, in front of the pulse counter's index |
 //! | [`error_table`] | a measured error of screw or scale over position, taken from the position reference |
 //! | [`excitation`] | a test signal on the position reference |
 //! | [`axis`] | the supervisor of an axis: states, limits, brake, faults |
@@ -60,6 +61,7 @@ pub mod linked_stage;
 pub mod machine;
 pub(crate) mod prelude;
 pub(crate) mod prim;
+pub mod probe_line;
 pub mod pulse_counter;
 pub mod pwm;
 pub mod registers;

@@ -134,6 +134,14 @@ pub enum HostError {
         /// What was refused, and what to do.
         what: &'static str,
     },
+    /// Homing by a probe failed.
+    #[error("axis {axis} was not homed: {what}")]
+    Probe {
+        /// Name of the axis.
+        axis: String,
+        /// What was missing.
+        what: &'static str,
+    },
     /// A trace was requested that the stage cannot record.
     #[error("{0}")]
     Trace(String),

@@ -24,6 +24,7 @@
 //! | [`HostedStage::status`] | states, causes and positions of all axes; writes nothing |
 //! | [`HostedStage::switch_on`], [`HostedStage::switch_off`] | outputs on and off |
 //! | [`HostedStage::move_axes`] | a jerk-limited move of several axes that start together |
+//! | [`HostedStage::home`] | homing by a probe |
 //! | [`HostedStage::trace`] | signals of an axis, tick by tick |
 //! | [`HostedStage::load_table`], [`HostedStage::read_table`] | another tap table, while the axis stands or moves; the table in a bank |
 //!
@@ -33,6 +34,7 @@
 //! machine file).
 
 mod error;
+mod home;
 mod host_error;
 mod inline;
 mod link;

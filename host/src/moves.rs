@@ -34,6 +34,13 @@ impl<L: Read + Write> HostedStage<'_, L> {
     /// [`HostError`] for a move that does not fit, in which case no axis moves, and for a fault on the way.
     pub fn move_axes(&mut self, moves: &[HostMove]) -> Result<(), HostError> {
         let axes: Vec<usize> = moves.iter().map(|of| of.axis).collect();
+        let ticks = self.begin(moves)?;
+        self.end(&axes, ticks)
+    }
+
+    /// Queues and starts the moves of axes that stand; returns the ticks within which they must end.
+    pub(crate) fn begin(&mut self, moves: &[HostMove]) -> Result<u32, HostError> {
+        let axes: Vec<usize> = moves.iter().map(|of| of.axis).collect();
         let all = self.status()?;
         for axis in &axes {
             let status = &all[*axis];
@@ -50,18 +57,22 @@ impl<L: Read + Write> HostedStage<'_, L> {
             .map(|entries| entries.iter().map(|entry| u64::from(entry.ticks)).sum())
             .max()
             .unwrap_or(0);
-        let ticks = u32::try_from(longest)
-            .unwrap_or(u32::MAX)
-            .saturating_add(PATIENCE_TICKS);
         for (axis, entries) in axes.iter().zip(&plans) {
             self.queue(*axis, entries)?;
         }
         self.start(&axes)?;
-        self.wait(&axes, ("come to the end of its move", ticks), |status| {
+        Ok(u32::try_from(longest)
+            .unwrap_or(u32::MAX)
+            .saturating_add(PATIENCE_TICKS))
+    }
+
+    /// Waits until the commands of these axes, and what their shapers make of them, stand still.
+    pub(crate) fn end(&mut self, axes: &[usize], ticks: u32) -> Result<(), HostError> {
+        self.wait(axes, ("come to the end of its move", ticks), |status| {
             status.state == Some(SupervisorState::Hold) && status.waiting == 0
         })?;
         let mut settle = 0;
-        for axis in &axes {
+        for axis in axes {
             settle = settle.max(
                 self.field(*axis, "settle", "settle_ticks")?
                     .of(self.read_one(*axis, "settle")?),

@@ -390,7 +390,8 @@ impl<'m, L: Read + Write> HostedStage<'m, L> {
         for axis in axes {
             let word = self.read_one(*axis, "control")?;
             let [enable, direct] = ["enable", "direct_enable"].map(|name| self.field(*axis, "control", name));
-            let (enable, direct) = (enable?.mask(), direct?.mask());
+            // An axis with steps has no direct mode.
+            let (enable, direct) = (enable?.mask(), direct.map_or(0, |field| field.mask()));
             self.write_one(
                 *axis,
                 "control",

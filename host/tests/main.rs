@@ -3,6 +3,7 @@
 
 mod campaign;
 mod faults;
+mod home;
 mod inline;
 mod spi;
 mod stage;

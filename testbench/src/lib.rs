@@ -98,6 +98,7 @@ pub(crate) const REGISTRY: &[RegistryRow] = &[
     parts::GROUP,
     parts::INLINE_GROUP,
     parts::LASTING_DEVIATION,
+    parts::PROBE_LINE,
     parts::SAMPLE_SELECT,
     parts::SETTING_BANKS,
     registers::ROW,

@@ -56,6 +56,29 @@ pub(super) fn move_axes<'m>(
     super::text::status(&mut stage, false)
 }
 
+pub(super) fn home<'m>(
+    machine: &'m Machine,
+    (axis, path): (&str, &Path),
+    [clears_faults, holds]: [bool; 2],
+    open: impl FnOnce() -> Result<Port<'m>, Failure>,
+) -> Result<(), Failure> {
+    let index = axis_of(machine, axis, path)?;
+    if machine.axes[index].probe.is_none() {
+        return Err(Failure::input(format!("{}: axis {axis} has no probe", path.display()))
+            .with_help("add [axis.probe] to the axis, and generate and build the stage anew"));
+    }
+    let mut stage = open()?;
+    stage.switch_on(&[index], clears_faults).map_err(failure)?;
+    let homed = stage.home(index);
+    let off = if holds && homed.is_ok() {
+        Ok(())
+    } else {
+        stage.switch_off(&[index])
+    };
+    homed.and(off).map_err(failure)?;
+    super::text::status(&mut stage, false)
+}
+
 /// Refuses a file name for the trace if the file cannot be written.
 pub(super) fn check_output(args: &TraceArgs) -> Result<(), Failure> {
     is_vcd(&args.output)?;

@@ -4,7 +4,7 @@ use crate::prelude::*;
 use crate::pulse_counter::GlitchFilter;
 
 kernel! {
-    pub(super) struct Line;
+    pub(crate) struct Line;
 
     inputs { rst: Bit, pin: Bit, ready: Bit, filter_clocks: Bits<6> }
     outputs { level: Bit }

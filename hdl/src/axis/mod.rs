@@ -21,6 +21,7 @@ mod timer;
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::Axis;
+pub(crate) use line::Line;
 use posicast_blocks::axis::{CLEAR_CLOCKS, LINE_CLOCKS, PORTS, WATCH_CLOCKS, ports};
 use posicast_blocks::{ClockedBlock, port_notes};
 

@@ -24,6 +24,7 @@ mod link_frames;
 pub mod linked_stage;
 mod moore;
 mod ports;
+pub mod probe_line;
 pub mod pulse_counter;
 pub mod pwm;
 pub mod registers;

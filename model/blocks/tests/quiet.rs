@@ -19,6 +19,7 @@ use posicast_blocks::inline_axis::{InlineAxis, InlineAxisConfig};
 use posicast_blocks::inline_group::{InlineGroup, InlineGroupConfig};
 use posicast_blocks::lasting_deviation::LastingDeviation;
 use posicast_blocks::linear_scale::LinearScale;
+use posicast_blocks::probe_line::ProbeLine;
 use posicast_blocks::pulse_counter::PulseCounter;
 use posicast_blocks::pwm::{BridgeMode, Pwm};
 use posicast_blocks::registers::{RegisterBank, RegisterMap, maps};
@@ -236,6 +237,11 @@ fn blocks() -> Vec<Tried> {
                 ("ticks", &[2]),
             ],
             LastingDeviation::new,
+        ),
+        tried(
+            "probe_line",
+            &[("rst", RARE), ("filter_clocks", &[0, 5, 40])],
+            ProbeLine::new,
         ),
         tried("error_table", ERROR_TABLE, || {
             let format = ErrorTableFormat {

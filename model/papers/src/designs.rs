@@ -34,6 +34,7 @@ pub(super) fn axis(shaper: ShaperChoice, modes: &[Mode]) -> AxisSection {
         steps: None,
         input: None,
         stepper: None,
+        probe: None,
     }
 }
 

@@ -94,13 +94,19 @@ fn write_axis(text: &mut String, machine: &HalMachine<'_>, number: usize, axis: 
         figure(axis.velocity),
         figure(axis.acceleration),
     );
-    let homing = match axis.index {
+    let [home, offset] = axis.probe.map_or([0.0; 2], |probe| [probe.rest, probe.position]);
+    let homing = match (axis.probe, axis.index) {
+        // One approach, at the velocity at which the contact counts: the hardware latches it.
+        (Some(probe), _) => format!(
+            "HOME_SEARCH_VEL = 0\nHOME_LATCH_VEL = {}\nHOME_USE_INDEX = YES\n",
+            figure(probe.velocity)
+        ),
         // This is only for the index: an axis with a switch also needs HOME_SEARCH_VEL.
-        true => format!(
+        (None, true) => format!(
             "HOME_SEARCH_VEL = 0\nHOME_LATCH_VEL = {}\nHOME_USE_INDEX = YES\n",
             figure(INDEX_SEARCH * axis.velocity)
         ),
-        false => "HOME_SEARCH_VEL = 0\nHOME_LATCH_VEL = 0\n".to_owned(),
+        (None, false) => "HOME_SEARCH_VEL = 0\nHOME_LATCH_VEL = 0\n".to_owned(),
     };
     let kind = if axis.rotary { "ANGULAR" } else { "LINEAR" };
     let _ = write!(
@@ -111,11 +117,13 @@ TYPE = {kind}
 {limits}# The stage's limit, and what shaper and FIFO are behind at full velocity.
 FERROR = {following}
 MIN_FERROR = {following}
-HOME = 0
-HOME_OFFSET = 0
+HOME = {home}
+HOME_OFFSET = {offset}
 {homing}HOME_SEQUENCE = 0
 ",
         following = figure(following),
+        home = figure(home),
+        offset = figure(offset),
     );
 }
 

@@ -1,6 +1,6 @@
 //! From a machine file's machine to LinuxCNC's units.
 
-use super::{HalAxis, HalMachine};
+use super::{HalAxis, HalMachine, HalProbe};
 use posicast_blocks::shaper_tables::{AxisShaperTables, ShaperTables, ShaperTablesError};
 use posicast_machine::machine_file::{AxisSection, ClockSection, Machine};
 use posicast_machine::motion::TickLimits;
@@ -104,6 +104,11 @@ fn hal_axis<'a>(axis: &'a AxisSection, clock: &ClockSection, table: &TapTable) -
             .map(|error| error * per_si),
         delay_s: table.mean_delay_samples() / clock.sample_hz,
         index: axis.encoder.as_ref().is_some_and(|encoder| encoder.index),
+        probe: axis.probe.map(|probe| HalProbe {
+            velocity: probe.side.sign() * probe.slow_velocity * per_si,
+            position: probe.position * per_si,
+            rest: (probe.position - probe.side.sign() * probe.retract) * per_si,
+        }),
     }
 }
 

@@ -65,6 +65,19 @@ pub struct HalAxis<'a> {
     pub delay_s: f64,
     /// Whether its encoder has an index.
     pub index: bool,
+    /// The probe at which it is homed, in place of an index.
+    pub probe: Option<HalProbe>,
+}
+
+/// The probe of an axis, in LinuxCNC's units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HalProbe {
+    /// Velocity of the approach, with its direction.
+    pub velocity: f64,
+    /// Position of the contact.
+    pub position: f64,
+    /// Position after homing, away from the contact.
+    pub rest: f64,
 }
 
 /// Why a machine cannot be driven by LinuxCNC. `axis` counts from 0.
@@ -135,10 +148,9 @@ fn header(machine: &HalMachine<'_>) -> String {
             axis.name,
             axis.unit()
         );
-        let ends = axis
-            .travel
-            .unwrap_or([0.0; 2])
-            .map(|end| (end * axis.counts_per_unit * COMMAND_LSB).round() as i32);
+        let ends = axis.travel.unwrap_or([0.0; 2]).map(|end| {
+            ((end - axis.probe.map_or(0.0, |probe| probe.position)) * axis.counts_per_unit * COMMAND_LSB).round() as i32
+        });
         let _ = writeln!(travel, "    {{{}, {}}},", ends[0], ends[1]);
     }
     format!(
@@ -155,7 +167,7 @@ fn header(machine: &HalMachine<'_>) -> String {
 static const double posicast_hal_counts[] = {{
 {counts}}};
 
-/* Soft limits from the origin, Q24.8 counts; equal where there are none. */
+/* Soft limits from the origin, which is the contact of a probe, Q24.8 counts; equal where there are none. */
 static const int32_t posicast_hal_travel[][2] = {{
 {travel}}};
 
@@ -201,6 +213,7 @@ mod tests {
             following_error: None,
             delay_s: 0.003,
             index: false,
+            probe: None,
         }
     }
 

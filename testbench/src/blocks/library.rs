@@ -131,6 +131,7 @@ pub(crate) fn stage() -> Result<StageConfig, Error> {
                 encoder_invert: false,
             })),
             supervision: SUPERVISION,
+            probe: None,
             scale: None,
             error_table: None,
             bring_up: None,

@@ -1,5 +1,5 @@
 //! The bench of the small blocks that connect others: schedule, divider share, group, inline group, time base, sample
-//! select, setting banks, lasting deviation.
+//! select, setting banks, lasting deviation, probe line.
 
 pub(crate) mod proofs;
 pub(crate) mod stimuli;
@@ -16,8 +16,8 @@ use posicast_blocks::sliding_mode::Settings;
 use posicast_blocks::{ClockedBlock, Port};
 use posicast_hdl::emit::{EmitError, Module};
 use posicast_hdl::{
-    SimulationError, divider_share, group, inline_group, lasting_deviation, sample_select, schedule, setting_banks,
-    time_base,
+    SimulationError, divider_share, group, inline_group, lasting_deviation, probe_line, sample_select, schedule,
+    setting_banks, time_base,
 };
 
 use crate::blocks::changes::Changes;
@@ -149,6 +149,15 @@ pub(crate) const LASTING_DEVIATION: RegistryRow = RegistryRow {
     areas: || Ok(vec![AreaRow::new("", lasting_deviation::emit("")?)]),
     ..RegistryRow::EMPTY
 };
+pub(crate) const PROBE_LINE: RegistryRow = RegistryRow {
+    name: "probe_line",
+    benches: |sizes| Ok(one(PartBlock::new(SmallPart::ProbeLine, &sizes.prefix))),
+    small: || Ok(small(PartBlock::new(SmallPart::ProbeLine, ""), "")),
+    proofs: || Ok(vec![proofs::probe_line()?]),
+    trials: || Ok(vec![trials::trial(SmallPart::ProbeLine, "")]),
+    mutants: trials::PROBE_LINE,
+    areas: || Ok(vec![AreaRow::new("", probe_line::emit("")?)]),
+};
 pub(crate) const SAMPLE_SELECT: RegistryRow = RegistryRow {
     name: "sample_select",
     benches: |sizes| Ok(one(PartBlock::new(WIDE_SAMPLES, &sizes.prefix))),
@@ -197,6 +206,8 @@ pub enum SmallPart {
     InlineGroup(InlineGroupConfig),
     /// `lasting_deviation`: passes a deviation on once it has lasted.
     LastingDeviation,
+    /// `probe_line`: polarity and filter of a probe.
+    ProbeLine,
     /// `time_base`: makes ticks of this length.
     TimeBase(DividerConfig),
     /// `sample_select`: selects the source of samples.
@@ -231,6 +242,7 @@ impl PartBlock {
             SmallPart::Group(axes) => (Model::Group(axes), format!("{axes} axes")),
             SmallPart::InlineGroup(config) => (Model::InlineGroup(config), proofs::group_size(config)),
             SmallPart::LastingDeviation => (Model::LastingDeviation, "alone".to_owned()),
+            SmallPart::ProbeLine => (Model::ProbeLine, "alone".to_owned()),
             SmallPart::TimeBase(config) => {
                 let clocks = format!("{} clocks per tick", config.tick_clocks());
                 (Model::TimeBase(config), clocks)
@@ -279,6 +291,7 @@ impl Block for PartBlock {
             SmallPart::Group(axes) => group::emit(*axes, prefix),
             SmallPart::InlineGroup(config) => inline_group::emit(*config, prefix),
             SmallPart::LastingDeviation => lasting_deviation::emit(prefix),
+            SmallPart::ProbeLine => probe_line::emit(prefix),
             SmallPart::TimeBase(config) => time_base::emit(config, prefix),
             SmallPart::SampleSelect { word_bits, channels } => sample_select::emit(*word_bits, *channels, prefix),
             SmallPart::SettingBanks(settings) => setting_banks::emit(settings, prefix),
@@ -293,6 +306,7 @@ impl Block for PartBlock {
             SmallPart::Group(axes) => group::name(*axes, prefix),
             SmallPart::InlineGroup(config) => inline_group::name(*config, prefix),
             SmallPart::LastingDeviation => lasting_deviation::name(prefix),
+            SmallPart::ProbeLine => probe_line::name(prefix),
             SmallPart::TimeBase(config) => time_base::name(config, prefix),
             SmallPart::SampleSelect { word_bits, channels } => sample_select::name(*word_bits, *channels, prefix),
             SmallPart::SettingBanks(_) => setting_banks::name(prefix),
@@ -310,6 +324,7 @@ impl Block for PartBlock {
             SmallPart::Group(axes) => group::simulate(*axes),
             SmallPart::InlineGroup(config) => inline_group::simulate(*config),
             SmallPart::LastingDeviation => lasting_deviation::simulate(),
+            SmallPart::ProbeLine => probe_line::simulate(),
             SmallPart::TimeBase(config) => time_base::simulate(config),
             SmallPart::SampleSelect { word_bits, channels } => sample_select::simulate(*word_bits, *channels),
             SmallPart::SettingBanks(settings) => setting_banks::simulate(settings),

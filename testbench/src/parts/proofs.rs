@@ -4,11 +4,12 @@ use posicast_blocks::divider::DividerConfig;
 use posicast_blocks::inline_group::InlineGroupConfig;
 use posicast_blocks::schedule::ScheduleConfig;
 use posicast_blocks::{
-    divider_share as share_model, group as group_model, lasting_deviation as lasting_model,
+    divider_share as share_model, group as group_model, lasting_deviation as lasting_model, probe_line as probe_model,
     sample_select as select_model, schedule as schedule_model, setting_banks as banks_model, time_base as time_model,
 };
 use posicast_hdl::{
-    divider_share, group, inline_group, lasting_deviation, sample_select, schedule, setting_banks, time_base,
+    divider_share, group, inline_group, lasting_deviation, probe_line, sample_select, schedule, setting_banks,
+    time_base,
 };
 
 use crate::Error;
@@ -59,6 +60,11 @@ pub(crate) fn inline_group(config: InlineGroupConfig) -> Result<Task, Error> {
 pub(crate) fn lasting_deviation() -> Result<Task, Error> {
     let block = (lasting_deviation::emit("")?, lasting_model::ports());
     Ok(Task::new("lasting_deviation", "", INDUCTION, block).properties(&[], include_str!("lasting_deviation.sv")))
+}
+
+pub(crate) fn probe_line() -> Result<Task, Error> {
+    let block = (probe_line::emit("")?, probe_model::ports());
+    Ok(Task::new("probe_line", "", INDUCTION, block).properties(&[], include_str!("probe_line.sv")))
 }
 
 pub(crate) fn schedule(clocks: u32) -> Result<Task, Error> {

@@ -54,6 +54,14 @@ pub(super) const LASTING_DEVIATION: &[BlockMutant] = &[
         "count_next = count",
     ),
 ];
+pub(super) const PROBE_LINE: &[BlockMutant] = &[
+    BlockMutant::new("a line in one polarity", "probe ^ active_low", "probe"),
+    BlockMutant::new(
+        "a filter from the reset on",
+        "primed[3] & (|filter_clocks)",
+        "(|filter_clocks)",
+    ),
+];
 pub(super) const SETTING_BANKS: &[BlockMutant] = &[
     BlockMutant::new(
         "a read-back of another row",

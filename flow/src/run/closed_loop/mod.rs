@@ -3,6 +3,7 @@
 
 mod contours;
 mod pictures;
+mod probing;
 mod report;
 mod step_lines;
 mod verdicts;
@@ -14,6 +15,7 @@ use crate::observer::Observer;
 use posicast_closed_loop::stage_run::{
     Circle, Circled, Compared, Compensated, Contoured, Expected, Moved, Shaping, StageRun, StageRunError,
 };
+use posicast_machine::hardware::StageHardware;
 use posicast_machine::machine_file::Machine;
 use posicast_machine::motion::AxisMove;
 use posicast_testbench::blocks::Sources;
@@ -62,6 +64,8 @@ pub(crate) struct ClosedLoop<'a> {
     circles: Result<Circles, String>,
     /// The path of `--contour`.
     contours: Option<Contours<'a>>,
+    /// The axes that are homed by a probe.
+    probed: Vec<probing::Probed>,
 }
 
 /// Results of the circle of the first two axes.
@@ -162,6 +166,11 @@ impl<'a> Job<'a> {
                 Done::ContourCompared(result) => contour_compared = Some(result),
             }
         }
+        let hardware = StageHardware {
+            of_machine: self.stage.of_machine.clone(),
+            component: self.stage.block.component().clone(),
+        };
+        let probed = probing::all(self.machine, &hardware, self.seed).map_err(refused)?;
         let lost = || Failure::input("a run of the closed loop is missing");
         let [shaped, unshaped, slower, faster] = moves.try_into().map_err(|_| lost())?;
         let mut contoured = contours.into_iter();
@@ -204,6 +213,7 @@ impl<'a> Job<'a> {
             harsh: (0..self.machine.axes.len()).map(|axis| own.is_harsh(axis)).collect(),
             circles,
             contours,
+            probed,
         })
     }
 

@@ -19,6 +19,7 @@ impl ClosedLoop<'_> {
         checks.push(self.without_trouble());
         checks.push(self.follows());
         checks.extend(self.kept_steps());
+        checks.extend(self.probed());
         checks.extend(self.calmer());
         checks.extend(self.limited());
         checks.extend(self.led_to_true_positions());

@@ -14,6 +14,7 @@ use crate::inline_axis::{InlineAxis, InlineAxisConfig};
 use crate::inline_group::{InlineGroup, InlineGroupConfig};
 use crate::lasting_deviation::LastingDeviation;
 use crate::linear_scale::LinearScale;
+use crate::probe_line::ProbeLine;
 use crate::pulse_counter::PulseCounter;
 use crate::pwm::{Pwm, PwmConfig};
 use crate::registers::{RegisterBank, RegisterMap};
@@ -65,6 +66,8 @@ pub enum ComponentPart {
     LinearScale,
     /// What passes the deviation from a scale on once it has lasted.
     LastingDeviation,
+    /// The line of a probe.
+    ProbeLine,
     /// A measured error over position, the machine's in bank 0.
     ErrorTable(Box<ErrorTableConfig>),
     /// A source of encoder edges in front of the pulse counter.
@@ -106,6 +109,7 @@ impl ComponentPart {
             Self::DriveCommand => "drive_command",
             Self::LinearScale => "linear_scale",
             Self::LastingDeviation => "lasting_deviation",
+            Self::ProbeLine => "probe_line",
             Self::ErrorTable(_) => "error_table",
             Self::EncoderGenerator => "encoder_generator",
             Self::Excitation => "excitation",
@@ -153,6 +157,7 @@ impl ComponentPart {
             Self::DriveCommand => Box::new(DriveCommand::new()),
             Self::LinearScale => Box::new(LinearScale::new()),
             Self::LastingDeviation => Box::new(LastingDeviation::new()),
+            Self::ProbeLine => Box::new(ProbeLine::new()),
             Self::ErrorTable(config) => Box::new(ErrorTable::new(config)),
             Self::EncoderGenerator => Box::new(EncoderGenerator::new()),
             Self::Excitation => Box::new(Excitation::new()),

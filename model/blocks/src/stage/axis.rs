@@ -25,6 +25,8 @@ const INPUT_PINS: [&str; 9] = [
 ];
 /// Input pins of an axis with steps.
 const INPUT_PINS_WITH_STEPS: [&str; 5] = ["z", "limit_plus_n", "limit_minus_n", "home", "drive_ready"];
+/// Pin of a probe, in place of `z`.
+const PROBE_PIN: &str = "probe";
 /// Input pins of a linear scale.
 const SCALE_PINS: [&str; 2] = ["scale_a", "scale_b"];
 /// Output pins of an axis with a controller.
@@ -262,7 +264,13 @@ pub(super) fn input_pins(axis: &StageAxis) -> Vec<&'static str> {
     let scale: &[&str] = if axis.scale.is_some() { &SCALE_PINS } else { &[] };
     match axis.follower {
         Follower::Loop(_) => [&INPUT_PINS, scale].concat(),
-        Follower::Steps(_) => [&INPUT_PINS_WITH_STEPS, scale].concat(),
+        Follower::Steps(_) => {
+            let pin = |pin: &'static str| match axis.probe {
+                Some(_) if pin == "z" => PROBE_PIN,
+                _ => pin,
+            };
+            [&INPUT_PINS_WITH_STEPS.map(pin), scale].concat()
+        }
     }
 }
 
@@ -299,6 +307,7 @@ pub(super) fn join(axis: &StageAxis, tick_clocks: u32) -> Result<JoinedBlocks, C
             ComponentPart::Axis,
         ],
     };
+    blocks.extend(axis.probe.map(|_| ComponentPart::ProbeLine));
     if let Some(trace) = axis.bring_up {
         let generator = axis.closed_loop().map(|_| ComponentPart::EncoderGenerator);
         blocks.extend(generator);
@@ -356,7 +365,7 @@ fn wire(axis: &StageAxis, tick_clocks: u32, block: &ComponentPart, part: Part) -
         ComponentPart::PulseCounter => {
             let part = on(part, PULSE_COUNTER).on("position", "user_position");
             match (&axis.follower, axis.bring_up) {
-                (Follower::Steps(config), _) => steps::counter(config, part),
+                (Follower::Steps(config), _) => steps::counter(config, axis.probe.is_some(), part),
                 (Follower::Loop(of), Some(_)) => encoder(of, part)
                     .on("a", "counter_a")
                     .on("b", "counter_b")
@@ -380,6 +389,13 @@ fn wire(axis: &StageAxis, tick_clocks: u32, block: &ComponentPart, part: Part) -
                 .tied("ratio_mantissa", u64::from(scale.ratio.mantissa() as u32 & 0x3_ffff))
                 .tied("ratio_shift", scale.ratio.shift().into())
                 .tied("use_scale", on_scale.into()),
+            None => part,
+        },
+        ComponentPart::ProbeLine => match axis.probe {
+            Some(probe) => part
+                .tied("active_low", probe.active_low.into())
+                .tied("filter_clocks", probe.filter_clocks.into())
+                .on("touched", steps::TOUCHED),
             None => part,
         },
         ComponentPart::LastingDeviation => part

@@ -42,6 +42,8 @@ pub struct StageAxis {
     pub follower: Follower,
     /// Words of its supervisor.
     pub supervision: Supervision,
+    /// The probe at which it is homed, in place of an index; only with steps.
+    pub probe: Option<StageProbe>,
     /// Its linear scale, if it has one.
     pub scale: Option<StageScale>,
     /// Its error table.
@@ -107,6 +109,15 @@ impl StageAxis {
             Follower::Steps(config) => Some(config),
         }
     }
+}
+
+/// The probe of an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StageProbe {
+    /// Whether its line is low while it touches.
+    pub active_low: bool,
+    /// Pulses of up to this many clocks on its line are ignored, 0 to 63.
+    pub filter_clocks: u32,
 }
 
 /// The linear scale of an axis.

@@ -30,7 +30,9 @@ mod schedule;
 mod steps;
 mod supervision;
 
-pub use self::config::{Follower, StageAxis, StageConfig, StageError, StageErrorTable, StageLoop, StageScale};
+pub use self::config::{
+    Follower, StageAxis, StageConfig, StageError, StageErrorTable, StageLoop, StageProbe, StageScale,
+};
 pub use self::registers::{AXIS_INTERRUPTS, axis_interrupt_bit, axis_window};
 pub(crate) use self::registers::{axis_register, driven_and_read};
 pub use self::schedule::StageSchedule;

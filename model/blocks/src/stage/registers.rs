@@ -227,6 +227,6 @@ pub fn axis_window(axis: &StageAxis) -> Vec<Register> {
     }
     match &axis.follower {
         Follower::Loop(_) => registers,
-        Follower::Steps(config) => steps::registers(config, registers),
+        Follower::Steps(config) => steps::registers(config, axis.probe.is_some(), registers),
     }
 }

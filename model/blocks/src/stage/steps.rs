@@ -11,6 +11,9 @@ use crate::step_generator::{StepGeneratorConfig, StepMode};
 /// Pulses of up to this many clocks on the lines of an encoder that watches the steps are ignored.
 pub(super) const SCALE_FILTER_CLOCKS: u32 = 8;
 
+/// Net of the contact of a probe.
+pub(super) const TOUCHED: &str = "probe_touched";
+
 /// Signals of the trace that only a controller has; they are recorded as 0.
 pub(super) const LACKS_SIGNALS: [&str; 3] = ["error", "sliding", "command"];
 
@@ -33,8 +36,8 @@ pub(super) fn generator(config: &StepGeneratorConfig, reference: &str, part: Par
     on(part, GENERATOR).on("position", reference).on("a", a).on("b", b)
 }
 
-/// Wires the pulse counter to the axis's own lines. An active-low line is the complement: a step then counts at the end of its pulse.
-pub(super) fn counter(config: &StepGeneratorConfig, part: Part) -> Part {
+/// Wires the pulse counter to the axis's own lines, and its index to a probe, if there is one. An active-low line is the complement: a step then counts at the end of its pulse.
+pub(super) fn counter(config: &StepGeneratorConfig, probes: bool, part: Part) -> Part {
     let [a, b] = config.mode().line_names();
     let low = config.lines_active_low();
     let (mode, reversed) = match config.mode() {
@@ -45,6 +48,7 @@ pub(super) fn counter(config: &StepGeneratorConfig, part: Part) -> Part {
     of_every_counter(part)
         .on("a", a)
         .on("b", b)
+        .on("z", if probes { TOUCHED } else { "z" })
         .tied("filter_clocks", 0)
         .tied("mode", mode)
         .tied("invert", reversed.into())
@@ -110,13 +114,16 @@ const LACKS_FIELDS: [&str; 14] = [
 ];
 
 /// The registers of an axis with steps, made from those of an axis with a controller.
-pub(super) fn registers(config: &StepGeneratorConfig, mut all: Vec<Register>) -> Vec<Register> {
+pub(super) fn registers(config: &StepGeneratorConfig, probes: bool, mut all: Vec<Register>) -> Vec<Register> {
     all.retain(|register| !LACKS_REGISTERS.contains(&register.name.as_str()));
     for register in &mut all {
         register
             .fields
             .retain(|field| !LACKS_FIELDS.contains(&field.name.as_str()));
         if register.name == "status" {
+            for field in register.fields.iter_mut().filter(|of| probes && of.name == "level_z") {
+                field.meaning = "the probe touches".to_owned();
+            }
             register
                 .fields
                 .push(Field::flag("steps_active", 7, "the steps follow the shaped position"));

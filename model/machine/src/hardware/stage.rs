@@ -15,7 +15,9 @@ use posicast_blocks::segments::POSITION_FRACTION;
 use posicast_blocks::shaper::{ShaperConfig, ShaperConfigError, ShaperMotion};
 use posicast_blocks::sliding_mode::{Law, Settings};
 use posicast_blocks::stage::Supervision;
-use posicast_blocks::stage::{Follower, StageAxis, StageConfig, StageErrorTable, StageLoop, StageScale, StageSchedule};
+use posicast_blocks::stage::{
+    Follower, StageAxis, StageConfig, StageErrorTable, StageLoop, StageProbe, StageScale, StageSchedule,
+};
 use posicast_blocks::step_generator::{StepGeneratorConfig, StepGeneratorConfigError};
 use posicast_blocks::trace::{TraceConfig, TraceConfigError};
 
@@ -303,6 +305,10 @@ impl Parts<'_> {
             modulo: self.axis.modulo,
             follower,
             supervision: self.supervision,
+            probe: self.axis.probe.map(|probe| StageProbe {
+                active_low: probe.active_low,
+                filter_clocks: probe.filter_clocks(clock),
+            }),
             scale: self.scale,
             error_table: self.error_table,
             bring_up: self.bring_up,

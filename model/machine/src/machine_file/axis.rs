@@ -5,7 +5,7 @@ use super::range::COUNTS_PER_UNIT;
 use super::table::Table;
 use super::{
     AxisSection, ClockSection, FixedPoint, ScaleUse, controller, drive, encoder, error_table, input, limits, mechanics,
-    mode, moving, pwm, scale, shaper, stepper, steps, trace,
+    mode, moving, probe, pwm, scale, shaper, stepper, steps, trace,
 };
 use crate::unit::AxisUnit;
 use posicast_blocks::shaper::MOTION_WORD_BITS;
@@ -73,6 +73,12 @@ pub(super) const KEYS: &[Key] = &[
         "Stepper motor behind the steps, for the simulation. Absent: a drive that is always at its steps.",
     ),
     Key::new(
+        "probe",
+        Values::Table(probe::KEYS),
+        "Touch switch at which the axis is homed.",
+    )
+    .rule("needs `[axis.steps]`"),
+    Key::new(
         "input",
         Values::Table(input::KEYS),
         "Lines of a controller whose step pulses are shaped, in place of a host's commands.",
@@ -132,6 +138,7 @@ pub(super) fn read(
     let controller = table.table("controller").map(|t| controller::read(&t, unit));
     let steps = table.table("steps").map(|t| (steps::read(&t, clock), t));
     let stepper = table.table("stepper").map(|t| stepper::read(&t, unit));
+    let probe = table.table("probe").map(|t| (probe::read(&t, unit, clock), t));
     let input = table.table("input").map(|t| (input::read(&t, clock), t));
     let scale = table.table("scale").map(|t| scale::read(table, &t, unit));
     let trace = table.table("trace").map(|t| trace::read(&t));
@@ -164,6 +171,9 @@ pub(super) fn read(
         };
         steps::check(table, steps, &of_axis);
     }
+    if let Some((Some(probe), table)) = &probe {
+        probe::check(table, probe, limits.as_ref(), unit);
+    }
     if let Some((Some(input), table)) = &input {
         input::check(table, input, limits.as_ref(), counts_per_unit);
     }
@@ -190,6 +200,7 @@ pub(super) fn read(
         steps: not_refused(steps.map(|(steps, _)| steps))?,
         input: not_refused(input.map(|(input, _)| input))?,
         stepper: not_refused(stepper)?,
+        probe: not_refused(probe.map(|(probe, _)| probe))?,
         limits,
         scale: not_refused(scale)?,
         error_table: not_refused(error_table)?,
@@ -246,7 +257,7 @@ pub(super) struct Need {
 }
 
 /// Blocks of an axis that need other blocks.
-pub(super) const NEEDS: [Need; 8] = [
+pub(super) const NEEDS: [Need; 9] = [
     Need {
         block: "scale",
         others: &["encoder"],
@@ -278,6 +289,12 @@ pub(super) const NEEDS: [Need; 8] = [
         allowed: "a stepper motor with [axis.steps], which turn its field",
     },
     Need {
+        block: "probe",
+        others: &["steps"],
+        or: None,
+        allowed: "a probe with [axis.steps]; an axis with an encoder is homed by its index",
+    },
+    Need {
         block: "input",
         others: &["steps"],
         or: None,
@@ -298,7 +315,7 @@ pub(super) const NEEDS: [Need; 8] = [
 ];
 
 /// The tables that an inline shaper has no block for.
-const NOT_WITH_INPUT: [&str; 4] = ["scale", "error_table", "trace", "family"];
+const NOT_WITH_INPUT: [&str; 5] = ["probe", "scale", "error_table", "trace", "family"];
 
 /// The blocks that `[axis.steps]` replaces.
 pub(super) const REPLACED_BY_STEPS: [&str; 4] = ["encoder", "pwm", "drive", "controller"];

@@ -166,7 +166,8 @@ fn read_link(root: &Table<'_, '_>, clock: Option<ClockSection>, axes: Option<&[A
     let link = root.table("link").and_then(|table| link::read(&table, clock));
     // Where the axes have a problem, it is the one to mend first.
     let lacks = |axis: &&AxisSection| {
-        axis.encoder.is_none() || axis.pwm.is_none() || axis.drive.is_none() || axis.controller.is_none()
+        let whole = axis.encoder.is_some() && axis.pwm.is_some() && axis.drive.is_some() && axis.controller.is_some();
+        !whole && axis.steps.is_none()
     };
     if let Some(axis) = axes?.iter().find(lacks).filter(|axis| axis.input.is_none())
         && link.is_some()
@@ -174,7 +175,7 @@ fn read_link(root: &Table<'_, '_>, clock: Option<ClockSection>, axes: Option<&[A
         root.contradiction(
             "link",
             format!("[link] beside axis {}, which lacks a part of its loop", axis.name),
-            "[link] where every axis has encoder, pwm, drive and controller: these make the stage that a host operates",
+            "[link] where every axis has encoder, pwm, drive and controller, or steps: these make the stage that a host operates",
             "remove [link], or add what the axis lacks",
         );
     }

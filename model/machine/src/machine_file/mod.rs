@@ -45,6 +45,7 @@ mod moving;
 mod names;
 mod page;
 mod place;
+mod probe;
 mod pwm;
 mod quantity;
 mod range;
@@ -71,6 +72,7 @@ pub use moving::FamilySection;
 pub(crate) use moving::MAX_TABLES;
 pub use page::with_tables;
 pub use place::line_of;
+pub use probe::{ProbeSection, ProbeSide};
 pub use pwm::{PwmMode, PwmSection};
 pub use scale::{Scale, ScaleUse};
 pub use schema::schema;
@@ -258,6 +260,8 @@ pub struct AxisSection {
     pub steps: Option<StepsSection>,
     /// `[axis.stepper]`; only with steps.
     pub stepper: Option<StepperSection>,
+    /// `[axis.probe]`; only with steps, and without an input.
+    pub probe: Option<ProbeSection>,
     /// `[axis.input]`; only with steps, and on every axis or none.
     pub input: Option<InputSection>,
     /// `[axis.limits]`.

@@ -191,7 +191,7 @@ fn what_needs_another_block_says_which() {
     let expected = "m.toml:72: axis.limits.deviation of axis x: found deviation without [axis.scale]; allowed: deviation on \
                     an axis with [axis.scale], from which the motor may deviate";
     case(scale, "", expected);
-    let expected = "m.toml:72: axis.limits.deviation_s of axis x: found deviation_s without deviation; allowed: deviation_s \
+    let expected = "m.toml:75: axis.limits.deviation_s of axis x: found deviation_s without deviation; allowed: deviation_s \
                     with deviation, which it lets pass for a time";
     case("deviation = 50e-6\n", "", expected);
     let expected = "m.toml:78: axis.limits.encoder_lost_command of axis x: found encoder_lost_command without encoder_lost_s; \

@@ -1,6 +1,7 @@
 //! `[axis.steps]` and `[axis.stepper]`: values, defaults, and what is refused with which message.
 
 use posicast_blocks::step_generator::{StepLinesActiveLow, StepMode, StepTimesInSeconds};
+use posicast_machine::machine_file::{ProbeSection, ProbeSide};
 
 use super::files::{right, wrong};
 
@@ -97,4 +98,70 @@ fn steps_stand_in_place_of_a_loop_and_need_limits() {
          on an axis with [axis.controller], whose loop it is about",
         "remove `following_error`",
     );
+}
+
+const PROBE: &str = "[axis.probe]\nactive_low = true\nfilter_s = 1e-6\nside = \"plus\"\nvelocity = 10.0\nwithin = 30.0\nretract = 3.0\n\
+                     position = 235.0\n\n[axis.limits]\nvelocity = 300.0";
+
+/// The file with a probe on its first axis, changed.
+fn with_probe(from: &str, to: &str) -> String {
+    let text = STEPS.replacen("[axis.limits]\nvelocity = 300.0", PROBE, 1);
+    assert!(text.contains("[axis.probe]") && text.contains(from), "{from}");
+    text.replacen(from, to, 1)
+}
+
+#[test]
+fn a_probe_is_read_in_the_unit_of_the_axis() {
+    let machine = right(&with_probe("", ""));
+    let expected = ProbeSection {
+        active_low: true,
+        filter_s: 1e-6,
+        side: ProbeSide::Plus,
+        velocity: 0.01,
+        slow_velocity: 0.002,
+        within: 0.03,
+        retract: 0.003,
+        position: 0.235,
+    };
+    assert_eq!((machine.axes[0].probe, machine.axes[1].probe), (Some(expected), None));
+    assert_eq!(expected.filter_clocks(&machine.clock), 50);
+}
+
+#[test]
+fn a_probe_that_contradicts_its_axis_is_refused() {
+    for (from, to, expected) in [
+        (
+            "velocity = 10.0",
+            "velocity = 400.0",
+            "m.toml:28: axis.probe.velocity of axis x: found velocity = 400 with limits.velocity = 300; allowed: an approach at \
+             most as fast as a move",
+        ),
+        (
+            "within = 30.0",
+            "within = 2.0",
+            "m.toml:30: axis.probe.retract of axis x: found retract = 3 with within = 2; allowed: a retract of at most the \
+             distance in which the contact is",
+        ),
+        (
+            "filter_s = 1e-6",
+            "filter_s = 1e-3",
+            "m.toml:26: axis.probe.filter_s of axis x: found filter_s = 1e-3; allowed: at most 1.260 µs, 63 clocks",
+        ),
+        (
+            "retract = 3.0",
+            "slow_velocity = 11.0\nretract = 3.0",
+            "m.toml:30: axis.probe.slow_velocity of axis x: found slow_velocity = 11 with velocity = 10; allowed: a second \
+             approach at most as fast as the first one",
+        ),
+    ] {
+        let error = wrong(&with_probe(from, to));
+        assert_eq!(error.to_string(), expected);
+    }
+    let text = with_probe("", "").replacen(
+        "mode = \"step_direction\"\npulse_s = 2e-6\ndirection_setup_s = 5e-6\n",
+        "",
+        1,
+    );
+    let error = wrong(&text.replacen("[axis.steps]\n", "", 1)).to_string();
+    assert!(error.contains("found [axis.probe] without [axis.steps]"), "{error}");
 }

@@ -18,8 +18,26 @@ pub struct EncoderPins {
     pub a: bool,
     /// Line B.
     pub b: bool,
-    /// Index, high for one count; always low without an index.
+    /// Index, high for one count, or the line of a probe; always low without either.
     pub z: bool,
+}
+
+/// A contact that is closed from a count on, and its line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Contact {
+    /// First count at which it touches.
+    pub(super) at: i64,
+    /// Whether it is closed at lower counts; otherwise at higher ones.
+    pub(super) below: bool,
+    /// Whether its line, Z, is low while it touches.
+    pub(super) active_low: bool,
+}
+
+impl Contact {
+    fn line(self, count: i64) -> bool {
+        let touches = if self.below { count <= self.at } else { count >= self.at };
+        touches != self.active_low
+    }
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -27,6 +45,7 @@ pub(super) struct Encoder {
     counts_per_unit: f64,
     cell_clocks: u32,
     index_at: Option<i64>,
+    contact: Option<Contact>,
     /// Whether A and B are exchanged, so that the lines count down where the count goes up.
     reversed: bool,
     /// The count that the lines show.
@@ -45,6 +64,7 @@ impl Encoder {
             counts_per_unit,
             cell_clocks,
             index_at,
+            contact: None,
             reversed: false,
             shown: nearest(at),
             from: at,
@@ -56,6 +76,11 @@ impl Encoder {
     /// Exchanges A and B, as the wiring may do.
     pub(super) fn reversed(self, reversed: bool) -> Self {
         Self { reversed, ..self }
+    }
+
+    /// Puts a contact on line Z, in place of the index.
+    pub(super) fn with_contact(self, contact: Option<Contact>) -> Self {
+        Self { contact, ..self }
     }
 
     /// Length of this many counts in m or rad.
@@ -73,7 +98,10 @@ impl Encoder {
         EncoderPins {
             a,
             b,
-            z: self.index_at == Some(self.shown),
+            z: match self.contact {
+                Some(contact) => contact.line(self.shown),
+                None => self.index_at == Some(self.shown),
+            },
         }
     }
 

@@ -70,13 +70,13 @@ pub use figures::{ErrorFigures, contour_error, residual_vibration, tracking_erro
 pub use pins::DrivePins;
 
 use self::drive::Driven;
-use self::encoder::Encoder;
+use self::encoder::{Contact, Encoder};
 use self::modes::LoadModes;
 use self::pins::{Command, PinMean};
 use self::step_lines::StepLines;
 use self::stepper::Stepper;
 use super::{Plant, PlantError};
-use crate::machine_file::{AxisSection, ClockSection, Drive, DriveMode, PwmSection, StepsSection};
+use crate::machine_file::{AxisSection, ClockSection, Drive, DriveMode, ProbeSide, PwmSection, StepsSection};
 
 /// Longest cell of the time grid, s: short compared with a tick and with the period of any mode.
 const CELL_S: f64 = 2e-6;
@@ -95,6 +95,8 @@ pub struct PlantOptions {
     pub encoder_at: Option<Coordinate>,
     /// Count at which the index is, if the encoder has one.
     pub index_at: i64,
+    /// Position of the contact of a probe, if the axis has one, m or rad.
+    pub contact_at: f64,
 }
 
 impl Default for PlantOptions {
@@ -104,6 +106,7 @@ impl Default for PlantOptions {
             position: 0.0,
             encoder_at: None,
             index_at: 0,
+            contact_at: 0.0,
         }
     }
 }
@@ -273,6 +276,11 @@ impl AxisPlant {
         let is_reversed = axis.encoder.as_ref().is_some_and(|encoder| encoder.invert);
         let is_scale_reversed = axis.scale.is_some_and(|scale| scale.invert);
         let has_index = axis.encoder.as_ref().is_some_and(|encoder| encoder.index);
+        let contact = axis.probe.map(|probe| Contact {
+            at: (options.contact_at * axis.counts_per_unit).round() as i64,
+            below: probe.side == ProbeSide::Minus,
+            active_low: probe.active_low,
+        });
         let driven = match motor {
             Motor::Pwm(_, drive) => Driven::new(drive, cell_s, options.position),
             Motor::Steps(_) => {
@@ -312,7 +320,9 @@ impl AxisPlant {
             encoder_at: options
                 .encoder_at
                 .unwrap_or(if stiff { Coordinate::Driven } else { Coordinate::Load }),
-            encoder: encoder(axis.counts_per_unit, has_index.then_some(options.index_at)).reversed(is_reversed),
+            encoder: encoder(axis.counts_per_unit, has_index.then_some(options.index_at))
+                .reversed(is_reversed)
+                .with_contact(contact),
             scale: scale.map(|counts_per_unit| encoder(counts_per_unit, None).reversed(is_scale_reversed)),
         })
     }
