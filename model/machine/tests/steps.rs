@@ -3,6 +3,7 @@
 use posicast_blocks::component::Component;
 use posicast_blocks::composition::Composed;
 use posicast_blocks::segments::{Entry, EntryMotion};
+use posicast_blocks::sliding_mode::CONTROL_CLOCKS;
 use posicast_blocks::{ClockedBlock, Direction};
 use posicast_machine::plan::design_machine;
 use posicast_machine::{hardware, machine_file};
@@ -203,6 +204,24 @@ fn an_emergency_stop_ends_the_steps_at_once_and_loses_no_count() {
     assert_eq!([bed.net("x_count"), bed.net("y_count")], [bed.x.steps, bed.y.steps]);
     assert_eq!([bed.x.disabled_steps, bed.y.disabled_steps], [0, 0]);
     assert_eq!(bed.net("x_causes") & 1, 1);
+}
+
+#[test]
+fn a_stage_of_steps_alone_counts_no_controller() {
+    let timing = |text: &str| {
+        let machine = machine_file::parse("m.toml", text).unwrap();
+        let stage = hardware::stage(&machine, &design_machine(&machine).unwrap()).unwrap();
+        stage.unwrap().config.timing()
+    };
+    let steps = timing(TEXT);
+    assert_eq!(steps.duty_clocks(), steps.control_clocks());
+    let text = steps.to_string();
+    assert!(
+        text.ends_with(&format!("steps from {0} on: {0} clocks", steps.control_clocks())),
+        "{text}"
+    );
+    let loops = timing(include_str!("../../../examples/xy-stage.toml"));
+    assert_eq!(loops.duty_clocks() - loops.control_clocks(), CONTROL_CLOCKS + 2);
 }
 
 #[test]

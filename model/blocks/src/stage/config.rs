@@ -222,7 +222,8 @@ impl StageConfig {
             .axes
             .iter()
             .any(|axis| axis.scale.is_some_and(|scale| scale.closes_loop));
-        StageSchedule::of(&passes, scaled)
+        let controls = self.axes.iter().any(|axis| axis.closed_loop().is_some());
+        StageSchedule::of(&passes, controls, scaled)
     }
 
     pub(super) fn schedule(&self) -> Result<ScheduleConfig, StageError> {

@@ -41,7 +41,10 @@ pub(super) fn stage(config: &StageConfig) -> Description {
         parameter(
             "duty_clocks",
             17,
-            "time from the tick to the new duty, which the PWM takes at its next boundary",
+            match config.axes.iter().any(|axis| axis.closed_loop().is_some()) {
+                true => "time from the tick to the new duty, which the PWM takes at its next boundary",
+                false => "time from the tick to the start of the step generators",
+            },
             config.timing().duty_clocks(),
         )
         .with_unit("clocks"),

@@ -30,12 +30,14 @@ pub struct StageSchedule {
     scale: u32,
     /// With the error table's pass behind the shaper's.
     shape: u32,
+    /// Whether an axis has a controller.
+    controls: bool,
 }
 
 impl StageSchedule {
-    /// Computes the schedule of axes with these shapers and clocks of the error tables behind them. `on_scale`: the loop of an axis runs on
-    /// its scale.
-    pub fn of(axes: &[(&ShaperConfig, u32)], on_scale: bool) -> Self {
+    /// Computes the schedule of axes with these shapers and clocks of the error tables behind them. `controls`: an axis has a
+    /// controller; `on_scale`: the loop of an axis runs on its scale.
+    pub fn of(axes: &[(&ShaperConfig, u32)], controls: bool, on_scale: bool) -> Self {
         let passes = axes
             .iter()
             .map(|(shaper, table_clocks)| shaper.pass_clocks(shaper.most_products()) + table_clocks);
@@ -43,17 +45,24 @@ impl StageSchedule {
             divide: axes.len() as u32 * SHARE_CLOCKS,
             scale: if on_scale { linear_scale::LATENCY_CLOCKS } else { 0 },
             shape: passes.max().unwrap_or(0),
+            controls,
         }
     }
 
-    /// Clocks from the tick to the start of the controllers.
+    /// Clocks from the tick to the start of controllers and step generators.
     pub fn control_clocks(&self) -> u32 {
         (CAPTURE_CLOCKS + self.divide + self.scale).max(GENERATE_CLOCKS + self.shape)
     }
 
-    /// Clocks from the tick to the new duty, which the PWM takes at its next boundary.
+    /// Clocks from the tick to the new duty, which the PWM takes at its next boundary; in a stage of steps alone, to the start of the
+    /// step generators.
     pub fn duty_clocks(&self) -> u32 {
-        self.control_clocks() + CONTROL_CLOCKS + OUTPUT_CLOCKS
+        self.control_clocks()
+            + if self.controls {
+                CONTROL_CLOCKS + OUTPUT_CLOCKS
+            } else {
+                0
+            }
     }
 }
 
@@ -61,13 +70,18 @@ impl fmt::Display for StageSchedule {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "capture, divide and scale {CAPTURE_CLOCKS} + {} + {}, beside generate and shape {GENERATE_CLOCKS} + {}; control from {} on, \
-             {CONTROL_CLOCKS}; duty {OUTPUT_CLOCKS} later: {} clocks",
-            self.divide,
-            self.scale,
-            self.shape,
-            self.control_clocks(),
-            self.duty_clocks()
-        )
+            "capture, divide and scale {CAPTURE_CLOCKS} + {} + {}, beside generate and shape {GENERATE_CLOCKS} + {}; ",
+            self.divide, self.scale, self.shape,
+        )?;
+        let from = self.control_clocks();
+        if self.controls {
+            write!(
+                f,
+                "control from {from} on, {CONTROL_CLOCKS}; duty {OUTPUT_CLOCKS} later: "
+            )?;
+        } else {
+            write!(f, "steps from {from} on: ")?;
+        }
+        write!(f, "{} clocks", self.duty_clocks())
     }
 }

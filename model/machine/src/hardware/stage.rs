@@ -189,7 +189,8 @@ pub fn stage(machine: &Machine, design: &MachineDesign) -> Result<Option<Machine
     let on_scale = axes
         .iter()
         .any(|parts| parts.scale.is_some_and(|scale| scale.closes_loop));
-    let used_clocks = StageSchedule::of(&passes, on_scale).duty_clocks();
+    let controls = axes.iter().any(|parts| matches!(parts.follows, Follows::Loop { .. }));
+    let used_clocks = StageSchedule::of(&passes, controls, on_scale).duty_clocks();
     let (mut loops, mut built) = (Vec::new(), Vec::new());
     for (index, parts) in axes.into_iter().enumerate() {
         let timed = timed_loop(&parts, machine, used_clocks)

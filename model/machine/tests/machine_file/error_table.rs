@@ -65,7 +65,8 @@ fn a_stage_with_a_table_takes_its_clocks_longer() {
     let latency = built(&machine).table.latency_clocks();
     assert_eq!(latency, 76);
     let shaper = &stage.config.axes[0].shaper;
-    let [without, with] = [0, latency].map(|clocks| StageSchedule::of(&[(shaper, clocks)], false).control_clocks());
+    let [without, with] =
+        [0, latency].map(|clocks| StageSchedule::of(&[(shaper, clocks)], true, false).control_clocks());
     assert!(with > without && with <= without + latency, "{without}, {with}");
 }
 
