@@ -296,10 +296,9 @@ fn failure(error: HostError) -> Failure {
         HostError::Late { .. }
         | HostError::Refused { .. }
         | HostError::Probe { .. }
+        | HostError::Deviates { .. }
         | HostError::Standstill
-        | HostError::Bypass { .. } => {
-            Failure::Check(error.to_string())
-        }
+        | HostError::Bypass { .. } => Failure::Check(error.to_string()),
         _ => Failure::because(error),
     }
 }

@@ -24,6 +24,7 @@
 //! | [`step_generator`] | the step generator: the position of every tick to the pulses of a drive with step inputs |
 //! | [`inline_axis`], [`inline_group`] | an axis of the inline shaper, and what its axes share |
 //! | [`inline_shaper`] | the inline shaper: from the steps of a controller to shaped steps for the drives |
+//! | [`realign`] | what a host's correction of missing steps does in hardware |
 //! | [`probe_line`] | the line of a probe, in front of the pulse counter's index |
 //! | [`error_table`] | a measured error of screw or scale over position, taken from the position reference |
 //! | [`excitation`] | a test signal on the position reference |
@@ -64,6 +65,7 @@ pub(crate) mod prim;
 pub mod probe_line;
 pub mod pulse_counter;
 pub mod pwm;
+pub mod realign;
 pub mod registers;
 pub mod sample_select;
 pub mod schedule;

@@ -17,8 +17,8 @@ use posicast_blocks::trace::TraceConfig;
 use posicast_hdl::emit::{LIBRARY, Module};
 use posicast_hdl::{
     axis, cascade, component, divider, divider_share, drive_command, encoder_generator, excitation, group, inline_axis,
-    inline_group, lasting_deviation, linear_scale, probe_line, pulse_counter, pwm, registers, sample_select, schedule,
-    segments, setting_banks, shaper, sliding_mode, spi_bridge, step_generator, time_base, trace, uart_bridge,
+    inline_group, lasting_deviation, linear_scale, probe_line, pulse_counter, pwm, realign, registers, sample_select,
+    schedule, segments, setting_banks, shaper, sliding_mode, spi_bridge, step_generator, time_base, trace, uart_bridge,
 };
 use posicast_taps::{Tap, TapTable};
 use std::collections::BTreeMap;
@@ -162,6 +162,7 @@ fn machine(prefix: &str, chance: &mut Chance) -> Vec<Vec<Module>> {
         drive_command::emit(prefix),
         linear_scale::emit(prefix),
         probe_line::emit(prefix),
+        realign::emit(prefix),
         lasting_deviation::emit(prefix),
         encoder_generator::emit(prefix),
         step_generator::emit(&step_generator_config(chance), prefix),

@@ -134,6 +134,18 @@ pub enum HostError {
         /// What was refused, and what to do.
         what: &'static str,
     },
+    /// An axis is too far off its scale to be corrected.
+    #[error(
+        "axis {axis} is {steps} steps off its scale, more than the {most} that are corrected: look for the cause, then home it"
+    )]
+    Deviates {
+        /// Name of the axis.
+        axis: String,
+        /// Missing steps.
+        steps: i32,
+        /// Largest number that is corrected.
+        most: u32,
+    },
     /// Homing by a probe failed.
     #[error("axis {axis} was not homed: {what}")]
     Probe {

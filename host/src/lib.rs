@@ -25,6 +25,7 @@
 //! | [`HostedStage::switch_on`], [`HostedStage::switch_off`] | outputs on and off |
 //! | [`HostedStage::move_axes`] | a jerk-limited move of several axes that start together |
 //! | [`HostedStage::home`] | homing by a probe |
+//! | [`HostedStage::correct`] | the steps that a motor has lost, as its scale shows them |
 //! | [`HostedStage::trace`] | signals of an axis, tick by tick |
 //! | [`HostedStage::load_table`], [`HostedStage::read_table`] | another tap table, while the axis stands or moves; the table in a bank |
 //!
@@ -33,6 +34,7 @@
 //! Calls that wait kick the watchdogs of all axes. If the host stops or the link fails, the watchdog stops the machine (`watchdog_s` of the
 //! machine file).
 
+mod correct;
 mod error;
 mod home;
 mod host_error;
@@ -47,6 +49,7 @@ mod tables;
 mod trace;
 mod udp;
 
+pub use correct::HostCorrection;
 pub use error::LinkError;
 pub use host_error::HostError;
 pub use inline::{HostedInline, InlineAxisStatus, InlineStatus};

@@ -114,3 +114,47 @@ fn an_axis_without_a_contact_is_not_homed() {
     assert!(matches!(host.home(0), Err(HostError::Probe { what, .. }) if what.contains("still touches")));
     assert!(matches!(host.home(1), Err(HostError::Probe { what, .. }) if what.contains("no [axis.probe]")));
 }
+
+#[test]
+fn a_motor_that_lost_pitches_is_brought_back() {
+    // Its largest acceleration is 2 m/s², and the move has 5: it is pulled over.
+    let tables = |most: &str| {
+        format!(
+            "[axis.scale]\ncounts_per_unit = 800_000\n[axis.correction]\nfrom = 0.0001\nmost = {most}\nvelocity = 0.02\nrest_s = 0.6"
+        )
+    };
+    let machine = with(&tables("0.2"), "20.0");
+    let stage = stage(&machine);
+    let mut host = open(&machine, &stage, 0.0);
+    host.switch_on(&[0], false).unwrap();
+    let there = HostMove {
+        axis: 0,
+        distance: 0.05,
+        speed: None,
+    };
+    host.move_axes(&[there]).unwrap();
+    let before = host.status().unwrap()[0].clone();
+    let corrected = host.correct(0).unwrap();
+    // Whole pitches of 64 steps.
+    assert!(
+        corrected.steps != 0 && (f64::from(corrected.steps) / 64.0).fract().abs() < 0.02,
+        "{corrected:?}"
+    );
+    // Nothing is given twice.
+    let again = host.correct(0).unwrap();
+    assert!(again.steps == 0 && again.left.abs() <= 1, "{again:?}");
+    let after = host.status().unwrap()[0].clone();
+    assert_eq!((after.position, after.causes), (before.position, 0));
+    let mut bench = host.into_link().into_line().bench;
+    assert_eq!(bench.read("x_corrected").unwrap() as i32, corrected.steps);
+    let at = bench.plant(0).motion().position * STEPS;
+    assert!((at - after.position).abs() <= 1.0, "{at} {after:?}");
+
+    // An axis that is farther off than the file allows stays as it is.
+    let machine = with(&tables("0.0005"), "20.0");
+    let stage = self::stage(&machine);
+    let mut host = open(&machine, &stage, 0.0);
+    host.switch_on(&[0], false).unwrap();
+    host.move_axes(&[there]).unwrap();
+    assert!(matches!(host.correct(0), Err(HostError::Deviates { most: 40, .. })));
+}

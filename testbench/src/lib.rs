@@ -99,6 +99,7 @@ pub(crate) const REGISTRY: &[RegistryRow] = &[
     parts::INLINE_GROUP,
     parts::LASTING_DEVIATION,
     parts::PROBE_LINE,
+    parts::REALIGN,
     parts::SAMPLE_SELECT,
     parts::SETTING_BANKS,
     registers::ROW,

@@ -11,6 +11,7 @@ use posicast_host::{HostError, HostMove, RecordedTrace, Shake, TraceRequest};
 use posicast_machine::machine_file::Machine;
 use posicast_system::output::OutputFiles;
 use posicast_taps::TapTable;
+use std::fmt::Write as _;
 use std::path::Path;
 
 /// Largest amplitude in counts: its 16 bits have 8 fraction bits.
@@ -45,15 +46,33 @@ pub(super) fn move_axes<'m>(
     let axes: Vec<usize> = moves.iter().map(|of| of.axis).collect();
     let mut stage = open()?;
     stage.switch_on(&axes, clears_faults).map_err(failure)?;
-    let moved = stage.move_axes(&moves);
+    let moved = stage.move_axes(&moves).and_then(|()| correct(&mut stage, &axes));
     // In any case, the axes end as the user wants them: off. A fault has already switched them off.
     let off = if holds && moved.is_ok() {
         Ok(())
     } else {
         stage.switch_off(&axes)
     };
-    moved.and(off).map_err(failure)?;
+    let corrected = moved.and_then(|corrected| off.map(|()| corrected)).map_err(failure)?;
+    output::print(&corrected)?;
     super::text::status(&mut stage, false)
+}
+
+/// Gives the missing steps of these axes, and reports them.
+fn correct(stage: &mut Port<'_>, axes: &[usize]) -> Result<String, HostError> {
+    let mut text = String::new();
+    for axis in axes {
+        let corrected = stage.correct(*axis)?;
+        if corrected.steps != 0 {
+            let name = &stage.machine().axes[*axis].name;
+            let _ = writeln!(
+                text,
+                "axis {name}: {} missing steps given, {} off now",
+                corrected.steps, corrected.left
+            );
+        }
+    }
+    Ok(text)
 }
 
 pub(super) fn home<'m>(

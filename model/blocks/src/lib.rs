@@ -27,6 +27,7 @@ mod ports;
 pub mod probe_line;
 pub mod pulse_counter;
 pub mod pwm;
+pub mod realign;
 pub mod registers;
 pub mod sample_select;
 pub mod schedule;

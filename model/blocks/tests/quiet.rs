@@ -22,6 +22,7 @@ use posicast_blocks::linear_scale::LinearScale;
 use posicast_blocks::probe_line::ProbeLine;
 use posicast_blocks::pulse_counter::PulseCounter;
 use posicast_blocks::pwm::{BridgeMode, Pwm};
+use posicast_blocks::realign::Realign;
 use posicast_blocks::registers::{RegisterBank, RegisterMap, maps};
 use posicast_blocks::sample_select::SampleSelect;
 use posicast_blocks::schedule::{Schedule, ScheduleConfig};
@@ -237,6 +238,11 @@ fn blocks() -> Vec<Tried> {
                 ("ticks", &[2]),
             ],
             LastingDeviation::new,
+        ),
+        tried(
+            "realign",
+            &[("rst", RARE), ("enabled", RARE), ("realign", RARE)],
+            Realign::new,
         ),
         tried(
             "probe_line",

@@ -62,21 +62,30 @@ const FAMILY: [Fixed; 2] = [
     ("src/posicast_family.c", include_str!("c/src/posicast_family.c")),
 ];
 
+/// Files for stages with an axis whose missing steps are corrected.
+const CORRECTION: [Fixed; 2] = [
+    ("inc/posicast_correction.h", include_str!("c/inc/posicast_correction.h")),
+    ("src/posicast_correction.c", include_str!("c/src/posicast_correction.c")),
+];
+
 /// Features of a stage that need additional files.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct With {
     pub(super) bring_up: bool,
     pub(super) error_table: bool,
+    pub(super) correction: bool,
     pub(super) family: bool,
 }
 
 pub(super) fn files(with: With) -> Vec<DriverFile> {
     let bring_up = BRING_UP.iter().filter(|_| with.bring_up);
     let error_table = ERROR_TABLE.iter().filter(|_| with.error_table);
+    let correction = CORRECTION.iter().filter(|_| with.correction);
     let family = FAMILY.iter().filter(|_| with.family);
     CORE.iter()
         .chain(bring_up)
         .chain(error_table)
+        .chain(correction)
         .chain(family)
         .map(|(path, text)| file(path, (*text).to_owned()))
         .collect()

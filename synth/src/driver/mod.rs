@@ -85,6 +85,7 @@ pub fn stage_files(driver: &StageDriver<'_>) -> Vec<DriverFile> {
     let mut files = fixed::files(fixed::With {
         bring_up: axes.iter().any(|axis| axis.bring_up.is_some()),
         error_table: axes.iter().any(|axis| axis.error_table.is_some()),
+        correction: axes.iter().any(|axis| axis.corrects),
         family: !driver.families.is_empty(),
     });
     files.push(file("inc/posicast_stage_regs.h", stage_registers::header(driver)));

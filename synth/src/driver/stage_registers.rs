@@ -142,7 +142,7 @@ fn bring_up(text: &mut String, driver: &StageDriver<'_>) {
     let _ = writeln!(text, "#define POSICAST_BRING_UP_AXES {mask:#x}u");
 }
 
-/// Writes which axes have an error table, if one has.
+/// Writes which axes have an error table, and which are corrected, if one does.
 fn error_tables(text: &mut String, driver: &StageDriver<'_>) {
     let axes = driver.config.axes.iter().enumerate();
     let mask: u32 = axes
@@ -152,6 +152,15 @@ fn error_tables(text: &mut String, driver: &StageDriver<'_>) {
     if mask != 0 {
         text.push_str("\n/* Mask of the axes with an error table. */\n");
         let _ = writeln!(text, "#define POSICAST_ERROR_TABLE_AXES {mask:#x}u");
+    }
+    let axes = driver.config.axes.iter().enumerate();
+    let mask: u32 = axes
+        .filter(|(_, axis)| axis.corrects)
+        .map(|(place, _)| 1 << place)
+        .sum();
+    if mask != 0 {
+        text.push_str("\n/* Mask of the axes whose missing steps are corrected. */\n");
+        let _ = writeln!(text, "#define POSICAST_CORRECTION_AXES {mask:#x}u");
     }
 }
 

@@ -9,6 +9,7 @@ mod identify;
 mod inline;
 mod integers;
 mod path;
+mod steps;
 pub(crate) mod support;
 mod udp;
 

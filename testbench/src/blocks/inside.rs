@@ -115,6 +115,7 @@ fn block_of_part(part: &Part, place: &Place<'_>) -> Result<Option<Box<dyn Block>
         Part::Axis => Box::new(AxisBlock::new(prefix, instance)),
         Part::DriveCommand => Box::new(DriveCommandBlock::new(prefix, instance)),
         Part::LinearScale => Box::new(LinearScaleBlock::new(prefix, instance)),
+        Part::Realign => small(Small::Realign),
         Part::ProbeLine => small(Small::ProbeLine),
         Part::LastingDeviation => small(Small::LastingDeviation),
         Part::ErrorTable(config) => Box::new(ErrorTableBlock::new(config.as_ref().clone(), prefix, instance)),

@@ -132,6 +132,7 @@ pub(crate) fn stage() -> Result<StageConfig, Error> {
             })),
             supervision: SUPERVISION,
             probe: None,
+            corrects: false,
             scale: None,
             error_table: None,
             bring_up: None,

@@ -1,5 +1,5 @@
 //! The bench of the small blocks that connect others: schedule, divider share, group, inline group, time base, sample
-//! select, setting banks, lasting deviation, probe line.
+//! select, setting banks, lasting deviation, probe line, realign.
 
 pub(crate) mod proofs;
 pub(crate) mod stimuli;
@@ -16,8 +16,8 @@ use posicast_blocks::sliding_mode::Settings;
 use posicast_blocks::{ClockedBlock, Port};
 use posicast_hdl::emit::{EmitError, Module};
 use posicast_hdl::{
-    SimulationError, divider_share, group, inline_group, lasting_deviation, probe_line, sample_select, schedule,
-    setting_banks, time_base,
+    SimulationError, divider_share, group, inline_group, lasting_deviation, probe_line, realign, sample_select,
+    schedule, setting_banks, time_base,
 };
 
 use crate::blocks::changes::Changes;
@@ -158,6 +158,15 @@ pub(crate) const PROBE_LINE: RegistryRow = RegistryRow {
     mutants: trials::PROBE_LINE,
     areas: || Ok(vec![AreaRow::new("", probe_line::emit("")?)]),
 };
+pub(crate) const REALIGN: RegistryRow = RegistryRow {
+    name: "realign",
+    benches: |sizes| Ok(one(PartBlock::new(SmallPart::Realign, &sizes.prefix))),
+    small: || Ok(small(PartBlock::new(SmallPart::Realign, ""), "")),
+    proofs: || Ok(vec![proofs::realign()?]),
+    trials: || Ok(vec![trials::trial(SmallPart::Realign, "")]),
+    mutants: trials::REALIGN,
+    areas: || Ok(vec![AreaRow::new("", realign::emit("")?)]),
+};
 pub(crate) const SAMPLE_SELECT: RegistryRow = RegistryRow {
     name: "sample_select",
     benches: |sizes| Ok(one(PartBlock::new(WIDE_SAMPLES, &sizes.prefix))),
@@ -208,6 +217,8 @@ pub enum SmallPart {
     LastingDeviation,
     /// `probe_line`: polarity and filter of a probe.
     ProbeLine,
+    /// `realign`: the deviation counts anew.
+    Realign,
     /// `time_base`: makes ticks of this length.
     TimeBase(DividerConfig),
     /// `sample_select`: selects the source of samples.
@@ -243,6 +254,7 @@ impl PartBlock {
             SmallPart::InlineGroup(config) => (Model::InlineGroup(config), proofs::group_size(config)),
             SmallPart::LastingDeviation => (Model::LastingDeviation, "alone".to_owned()),
             SmallPart::ProbeLine => (Model::ProbeLine, "alone".to_owned()),
+            SmallPart::Realign => (Model::Realign, "alone".to_owned()),
             SmallPart::TimeBase(config) => {
                 let clocks = format!("{} clocks per tick", config.tick_clocks());
                 (Model::TimeBase(config), clocks)
@@ -292,6 +304,7 @@ impl Block for PartBlock {
             SmallPart::InlineGroup(config) => inline_group::emit(*config, prefix),
             SmallPart::LastingDeviation => lasting_deviation::emit(prefix),
             SmallPart::ProbeLine => probe_line::emit(prefix),
+            SmallPart::Realign => realign::emit(prefix),
             SmallPart::TimeBase(config) => time_base::emit(config, prefix),
             SmallPart::SampleSelect { word_bits, channels } => sample_select::emit(*word_bits, *channels, prefix),
             SmallPart::SettingBanks(settings) => setting_banks::emit(settings, prefix),
@@ -307,6 +320,7 @@ impl Block for PartBlock {
             SmallPart::InlineGroup(config) => inline_group::name(*config, prefix),
             SmallPart::LastingDeviation => lasting_deviation::name(prefix),
             SmallPart::ProbeLine => probe_line::name(prefix),
+            SmallPart::Realign => realign::name(prefix),
             SmallPart::TimeBase(config) => time_base::name(config, prefix),
             SmallPart::SampleSelect { word_bits, channels } => sample_select::name(*word_bits, *channels, prefix),
             SmallPart::SettingBanks(_) => setting_banks::name(prefix),
@@ -325,6 +339,7 @@ impl Block for PartBlock {
             SmallPart::InlineGroup(config) => inline_group::simulate(*config),
             SmallPart::LastingDeviation => lasting_deviation::simulate(),
             SmallPart::ProbeLine => probe_line::simulate(),
+            SmallPart::Realign => realign::simulate(),
             SmallPart::TimeBase(config) => time_base::simulate(config),
             SmallPart::SampleSelect { word_bits, channels } => sample_select::simulate(*word_bits, *channels),
             SmallPart::SettingBanks(settings) => setting_banks::simulate(settings),

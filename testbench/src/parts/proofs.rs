@@ -5,10 +5,11 @@ use posicast_blocks::inline_group::InlineGroupConfig;
 use posicast_blocks::schedule::ScheduleConfig;
 use posicast_blocks::{
     divider_share as share_model, group as group_model, lasting_deviation as lasting_model, probe_line as probe_model,
+    realign as realign_model,
     sample_select as select_model, schedule as schedule_model, setting_banks as banks_model, time_base as time_model,
 };
 use posicast_hdl::{
-    divider_share, group, inline_group, lasting_deviation, probe_line, sample_select, schedule, setting_banks,
+    divider_share, group, inline_group, lasting_deviation, probe_line, realign, sample_select, schedule, setting_banks,
     time_base,
 };
 
@@ -65,6 +66,11 @@ pub(crate) fn lasting_deviation() -> Result<Task, Error> {
 pub(crate) fn probe_line() -> Result<Task, Error> {
     let block = (probe_line::emit("")?, probe_model::ports());
     Ok(Task::new("probe_line", "", INDUCTION, block).properties(&[], include_str!("probe_line.sv")))
+}
+
+pub(crate) fn realign() -> Result<Task, Error> {
+    let block = (realign::emit("")?, realign_model::ports());
+    Ok(Task::new("realign", "", INDUCTION, block).properties(&[], include_str!("realign.sv")))
 }
 
 pub(crate) fn schedule(clocks: u32) -> Result<Task, Error> {

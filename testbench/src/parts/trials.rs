@@ -62,6 +62,10 @@ pub(super) const PROBE_LINE: &[BlockMutant] = &[
         "(|filter_clocks)",
     ),
 ];
+pub(super) const REALIGN: &[BlockMutant] = &[
+    BlockMutant::new("a correction that does not align", "enabled | realign", "enabled"),
+    BlockMutant::new("steps without their sign", "{16{realign_steps[15]}}", "{16{1'b0}}"),
+];
 pub(super) const SETTING_BANKS: &[BlockMutant] = &[
     BlockMutant::new(
         "a read-back of another row",

@@ -17,6 +17,7 @@ use crate::linear_scale::LinearScale;
 use crate::probe_line::ProbeLine;
 use crate::pulse_counter::PulseCounter;
 use crate::pwm::{Pwm, PwmConfig};
+use crate::realign::Realign;
 use crate::registers::{RegisterBank, RegisterMap};
 use crate::sample_select::SampleSelect;
 use crate::schedule::{Schedule, ScheduleConfig};
@@ -66,6 +67,8 @@ pub enum ComponentPart {
     LinearScale,
     /// What passes the deviation from a scale on once it has lasted.
     LastingDeviation,
+    /// What a correction of missing steps does.
+    Realign,
     /// The line of a probe.
     ProbeLine,
     /// A measured error over position, the machine's in bank 0.
@@ -109,6 +112,7 @@ impl ComponentPart {
             Self::DriveCommand => "drive_command",
             Self::LinearScale => "linear_scale",
             Self::LastingDeviation => "lasting_deviation",
+            Self::Realign => "realign",
             Self::ProbeLine => "probe_line",
             Self::ErrorTable(_) => "error_table",
             Self::EncoderGenerator => "encoder_generator",
@@ -157,6 +161,7 @@ impl ComponentPart {
             Self::DriveCommand => Box::new(DriveCommand::new()),
             Self::LinearScale => Box::new(LinearScale::new()),
             Self::LastingDeviation => Box::new(LastingDeviation::new()),
+            Self::Realign => Box::new(Realign::new()),
             Self::ProbeLine => Box::new(ProbeLine::new()),
             Self::ErrorTable(config) => Box::new(ErrorTable::new(config)),
             Self::EncoderGenerator => Box::new(EncoderGenerator::new()),

@@ -166,6 +166,8 @@ const PWM: Nets = &[
     ("trigger", "pwm_trigger"),
 ];
 
+/// Net from which on the deviation counts, where a host corrects it.
+const ALIGN: &str = "scale_align";
 /// Net of the deviation that has lasted.
 const LASTING_DEVIATION: &str = "lasting_deviation";
 /// Name of the part that counts the scale's pulses.
@@ -183,7 +185,6 @@ const LINEAR_SCALE: Nets = &[
     ("motor_position", "count"),
     ("scale_position", "scale_count"),
     ("motor_velocity", "velocity"),
-    ("align", "enabled"),
     ("position", "loop_position"),
     ("velocity", "loop_velocity"),
 ];
@@ -323,6 +324,9 @@ pub(super) fn join(axis: &StageAxis, tick_clocks: u32) -> Result<JoinedBlocks, C
     if axis.scale.is_some() {
         blocks.push((SCALE_COUNTER.to_owned(), ComponentPart::PulseCounter));
         blocks.push(("linear_scale".to_owned(), ComponentPart::LinearScale));
+        if axis.corrects {
+            blocks.push(("realign".to_owned(), ComponentPart::Realign));
+        }
         if axis.deviation_lasts() {
             blocks.push(("lasting_deviation".to_owned(), ComponentPart::LastingDeviation));
         }
@@ -386,11 +390,13 @@ fn wire(axis: &StageAxis, tick_clocks: u32, block: &ComponentPart, part: Part) -
             .on("position", loop_position),
         ComponentPart::LinearScale => match axis.scale {
             Some(scale) => on(part, LINEAR_SCALE)
+                .on("align", if axis.corrects { ALIGN } else { "enabled" })
                 .tied("ratio_mantissa", u64::from(scale.ratio.mantissa() as u32 & 0x3_ffff))
                 .tied("ratio_shift", scale.ratio.shift().into())
                 .tied("use_scale", on_scale.into()),
             None => part,
         },
+        ComponentPart::Realign => part.on("align", ALIGN),
         ComponentPart::ProbeLine => match axis.probe {
             Some(probe) => part
                 .tied("active_low", probe.active_low.into())

@@ -33,6 +33,34 @@ pub(super) fn of_scale(scale: &StageScale) -> Vec<Register> {
     ]
 }
 
+/// Registers with which a host corrects missing steps.
+pub(super) fn of_correction() -> Vec<Register> {
+    vec![
+        Register::new(
+            "realign",
+            0x44,
+            Access::command("realign"),
+            "the deviation counts from now on: a host corrects it by this many steps",
+            vec![
+                Field::new("realign_steps", 0, 16, "missing steps, up less down")
+                    .signed()
+                    .with_unit("counts"),
+            ],
+        ),
+        Register::new(
+            "corrected",
+            0x45,
+            Access::Live,
+            "steps for which a host has written `REALIGN` since reset",
+            vec![
+                Field::new("corrected_steps", 0, 32, "corrected steps, up less down")
+                    .signed()
+                    .with_unit("counts"),
+            ],
+        ),
+    ]
+}
+
 fn states() -> Vec<Register> {
     let names = SupervisorState::ALL.map(|state| (state as u32, state.name().to_lowercase(), state.meaning()));
     let states: Vec<_> = (names.iter())

@@ -44,6 +44,8 @@ pub struct StageAxis {
     pub supervision: Supervision,
     /// The probe at which it is homed, in place of an index; only with steps.
     pub probe: Option<StageProbe>,
+    /// Whether a host corrects missing steps by the scale; only with steps and a scale.
+    pub corrects: bool,
     /// Its linear scale, if it has one.
     pub scale: Option<StageScale>,
     /// Its error table.

@@ -222,6 +222,9 @@ pub fn axis_window(axis: &StageAxis) -> Vec<Register> {
     if let Some(scale) = &axis.scale {
         registers.extend(axis_words::of_scale(scale));
     }
+    if axis.corrects {
+        registers.extend(axis_words::of_correction());
+    }
     if let Some(of) = &axis.error_table {
         registers.extend(error_table::registers(&of.table));
     }

@@ -310,6 +310,7 @@ impl Parts<'_> {
                 active_low: probe.active_low,
                 filter_clocks: probe.filter_clocks(clock),
             }),
+            corrects: self.axis.correction.is_some(),
             scale: self.scale,
             error_table: self.error_table,
             bring_up: self.bring_up,

@@ -4,8 +4,8 @@ use super::key::{Default, Key, Values};
 use super::range::COUNTS_PER_UNIT;
 use super::table::Table;
 use super::{
-    AxisSection, ClockSection, FixedPoint, ScaleUse, controller, drive, encoder, error_table, input, limits, mechanics,
-    mode, moving, probe, pwm, scale, shaper, stepper, steps, trace,
+    AxisSection, ClockSection, FixedPoint, ScaleUse, controller, correction, drive, encoder, error_table, input,
+    limits, mechanics, mode, moving, probe, pwm, scale, shaper, stepper, steps, trace,
 };
 use crate::unit::AxisUnit;
 use posicast_blocks::shaper::MOTION_WORD_BITS;
@@ -79,6 +79,12 @@ pub(super) const KEYS: &[Key] = &[
     )
     .rule("needs `[axis.steps]`"),
     Key::new(
+        "correction",
+        Values::Table(correction::KEYS),
+        "Missing steps that a host gives while the axis rests.",
+    )
+    .rule("needs `[axis.steps]` and `[axis.scale]`"),
+    Key::new(
         "input",
         Values::Table(input::KEYS),
         "Lines of a controller whose step pulses are shaped, in place of a host's commands.",
@@ -139,6 +145,7 @@ pub(super) fn read(
     let steps = table.table("steps").map(|t| (steps::read(&t, clock), t));
     let stepper = table.table("stepper").map(|t| stepper::read(&t, unit));
     let probe = table.table("probe").map(|t| (probe::read(&t, unit, clock), t));
+    let correction = table.table("correction").map(|t| (correction::read(&t, unit), t));
     let input = table.table("input").map(|t| (input::read(&t, clock), t));
     let scale = table.table("scale").map(|t| scale::read(table, &t, unit));
     let trace = table.table("trace").map(|t| trace::read(&t));
@@ -174,6 +181,9 @@ pub(super) fn read(
     if let Some((Some(probe), table)) = &probe {
         probe::check(table, probe, limits.as_ref(), unit);
     }
+    if let Some((Some(correction), table)) = &correction {
+        correction::check(table, correction, limits.as_ref(), (unit, counts_per_unit));
+    }
     if let Some((Some(input), table)) = &input {
         input::check(table, input, limits.as_ref(), counts_per_unit);
     }
@@ -203,6 +213,7 @@ pub(super) fn read(
         probe: not_refused(probe.map(|(probe, _)| probe))?,
         limits,
         scale: not_refused(scale)?,
+        correction: not_refused(correction.map(|(correction, _)| correction))?,
         error_table: not_refused(error_table)?,
         trace: not_refused(trace)?,
     })
@@ -257,7 +268,7 @@ pub(super) struct Need {
 }
 
 /// Blocks of an axis that need other blocks.
-pub(super) const NEEDS: [Need; 9] = [
+pub(super) const NEEDS: [Need; 10] = [
     Need {
         block: "scale",
         others: &["encoder"],
@@ -295,6 +306,12 @@ pub(super) const NEEDS: [Need; 9] = [
         allowed: "a probe with [axis.steps]; an axis with an encoder is homed by its index",
     },
     Need {
+        block: "correction",
+        others: &["steps", "scale"],
+        or: None,
+        allowed: "a correction with [axis.steps] and [axis.scale], which shows the missing steps",
+    },
+    Need {
         block: "input",
         others: &["steps"],
         or: None,
@@ -315,7 +332,7 @@ pub(super) const NEEDS: [Need; 9] = [
 ];
 
 /// The tables that an inline shaper has no block for.
-const NOT_WITH_INPUT: [&str; 5] = ["probe", "scale", "error_table", "trace", "family"];
+const NOT_WITH_INPUT: [&str; 6] = ["correction", "probe", "scale", "error_table", "trace", "family"];
 
 /// The blocks that `[axis.steps]` replaces.
 pub(super) const REPLACED_BY_STEPS: [&str; 4] = ["encoder", "pwm", "drive", "controller"];

@@ -29,6 +29,7 @@
 
 mod axis;
 mod controller;
+mod correction;
 mod drive;
 mod encoder;
 mod error;
@@ -60,6 +61,7 @@ mod table;
 mod trace;
 
 pub use controller::Controller;
+pub use correction::CorrectionSection;
 pub use drive::{Drive, DriveMode};
 pub use encoder::Encoder;
 pub use error::{MAX_PROBLEMS, Problem, ProblemCause, SpecError};
@@ -268,6 +270,8 @@ pub struct AxisSection {
     pub limits: Option<LimitsSection>,
     /// `[axis.scale]`; only with an encoder or steps.
     pub scale: Option<Scale>,
+    /// `[axis.correction]`; only with steps and a scale.
+    pub correction: Option<CorrectionSection>,
     /// `[axis.error_table]`; only with a controller or steps.
     pub error_table: Option<ErrorTableSection>,
     /// `[axis.trace]`; only with a controller or steps.

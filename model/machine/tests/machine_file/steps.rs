@@ -1,7 +1,7 @@
 //! `[axis.steps]` and `[axis.stepper]`: values, defaults, and what is refused with which message.
 
 use posicast_blocks::step_generator::{StepLinesActiveLow, StepMode, StepTimesInSeconds};
-use posicast_machine::machine_file::{ProbeSection, ProbeSide};
+use posicast_machine::machine_file::{CorrectionSection, ProbeSection, ProbeSide};
 
 use super::files::{right, wrong};
 
@@ -164,4 +164,54 @@ fn a_probe_that_contradicts_its_axis_is_refused() {
     );
     let error = wrong(&text.replacen("[axis.steps]\n", "", 1)).to_string();
     assert!(error.contains("found [axis.probe] without [axis.steps]"), "{error}");
+}
+
+const CORRECTION: &str = "[axis.scale]\ncounts_per_unit = 800\n\n[axis.correction]\nfrom = 0.1\nmost = 5.0\nvelocity = 2.0\nrest_s = 0.3\n\n\
+                          [axis.limits]\ndeviation = 5.0\nvelocity = 300.0";
+
+#[test]
+fn a_correction_is_read_and_its_contradictions_are_refused() {
+    let text = STEPS.replacen("[axis.limits]\nvelocity = 300.0", CORRECTION, 1);
+    let machine = right(&text);
+    let expected = CorrectionSection {
+        from: 0.0001,
+        most: 0.005,
+        velocity: 0.002,
+        rest_s: 0.3,
+    };
+    assert_eq!(machine.axes[0].correction, Some(expected));
+    for (from, to, expected) in [
+        (
+            "from = 0.1",
+            "from = 0.01",
+            "axis.correction.from of axis x: found from = 0.01, 0.8 steps; allowed: at least a step",
+        ),
+        (
+            "from = 0.1",
+            "from = 6.0",
+            "axis.correction.from of axis x: found from = 6 with most = 5; allowed: less than `most`",
+        ),
+        (
+            "most = 5.0",
+            "most = 6.0",
+            "axis.correction.most of axis x: found most = 6 with limits.deviation = 5; allowed: a correction of at most the \
+             deviation that stops the axis",
+        ),
+        (
+            "velocity = 2.0",
+            "velocity = 400.0",
+            "axis.correction.velocity of axis x: found velocity = 400 with limits.velocity = 300; allowed: a correction at most \
+             as fast as a move",
+        ),
+        (
+            "[axis.scale]\ncounts_per_unit = 800\n",
+            "",
+            "found [axis.correction] without [axis.scale]; allowed: a correction with [axis.steps] and [axis.scale], which shows \
+             the missing steps",
+        ),
+    ] {
+        assert!(text.contains(from), "{from}");
+        let error = wrong(&text.replacen(from, to, 1)).to_string();
+        assert!(error.contains(expected), "{error}");
+    }
 }

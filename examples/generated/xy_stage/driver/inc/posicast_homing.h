@@ -2,6 +2,7 @@
  * Homing: an axis searches for its home switch, then for the index of its encoder, and gives that place a known position.
  *
  *   HOLD ─► off the switch, if it is on it ─► towards the switch ─► towards the index ─► HOLD, POSITION known
+ *   HOLD ─► towards the probe ─► retract ─► slowly towards the probe ─► retract ─► HOLD, POSITION known
  *
  * Commands and soft limits stay in counts since reset, like COUNT: a position is commanded as position + posicast_origin, and
  * posicast_limit_travel shifts the soft limits. The searches end with a quick stop, for which there must be room after the switch.
@@ -30,6 +31,27 @@ typedef struct {
  * POSICAST_WRONG_STATE, POSICAST_FAULT and POSICAST_TIMEOUT are as for moves; after POSICAST_TIMEOUT the axis is stopping.
  */
 posicast_result posicast_home(const posicast_stage *stage, uint32_t axis, const posicast_homing *homing, uint32_t ticks);
+
+/* Homing by a probe: an axis with [axis.probe]. */
+typedef struct {
+    /* Limits of the first approach, and of the moves back. */
+    posicast_limits limits;
+    /* Limits of the second approach, whose contact is the reference. */
+    posicast_limits slow;
+    /* Largest distance of the contact in Q24.8 counts; the sign gives its direction. */
+    int32_t within;
+    /* Distance back from the contact, above 0: before the second approach, and at the end. */
+    int32_t retract;
+    /* Position of the contact in counts. */
+    int32_t position;
+} posicast_probing;
+
+/*
+ * Homes an axis in HOLD by its probe, and ends at rest, `retract` from the contact. The hardware sets the position at the contact.
+ * `ticks` limits each of its moves, of which there are up to five. Returns POSICAST_NO_REFERENCE if there was no contact within its
+ * distance, or if the probe touches after a move back; otherwise as posicast_home.
+ */
+posicast_result posicast_home_by_probe(const posicast_stage *stage, uint32_t axis, const posicast_probing *probing, uint32_t ticks);
 
 /* Returns the COUNT at which POSITION is 0. */
 int32_t posicast_origin(const posicast_stage *stage, uint32_t axis);

@@ -70,21 +70,23 @@ static posicast_result seek_switch(const posicast_stage *stage, uint32_t axis, c
     return seek(stage, axis, &homing->limits, homing->switch_within, home, home, ticks, found_at);
 }
 
-/* Searches for the index, at which the hardware sets the position: exactly, however fast the axis passes it. */
-static posicast_result seek_index(const posicast_stage *stage, uint32_t axis, const posicast_homing *homing, uint32_t ticks)
+/*
+ * Searches for the index, or the contact of a probe, at which the hardware sets the position: exactly, however fast the axis passes it.
+ */
+static posicast_result seek_index(const posicast_stage *stage, uint32_t axis, const posicast_limits *limits, int32_t within,
+                                  int32_t position, uint32_t ticks)
 {
     const uint32_t setup = (uint32_t)IORD_POSICAST_AXIS_INDEX(stage->base, axis);
     posicast_result result;
     int32_t found_at;
 
-    IOWR_POSICAST_AXIS_PRESET(stage->base, axis, (uint32_t)homing->position);
+    IOWR_POSICAST_AXIS_PRESET(stage->base, axis, (uint32_t)position);
     IOWR_POSICAST_AXIS_INDEX(stage->base, axis,
                              (setup & ~POSICAST_AXIS_INDEX_INDEX_ALWAYS_MSK) | POSICAST_AXIS_INDEX_INDEX_PRESETS_MSK);
     IOWR_POSICAST_AXIS_INDEX_ARM(stage->base, axis, 0);
     result = posicast_wait_flags(stage);
     if (result == POSICAST_OK)
-        result = seek(stage, axis, &homing->limits, homing->index_within, POSICAST_AXIS_STATUS_INDEX_ARMED_MSK, 0, ticks,
-                      &found_at);
+        result = seek(stage, axis, limits, within, POSICAST_AXIS_STATUS_INDEX_ARMED_MSK, 0, ticks, &found_at);
     /* A later index must not move the origin again. */
     IOWR_POSICAST_AXIS_INDEX(stage->base, axis, setup);
     return result;
@@ -105,11 +107,53 @@ posicast_result posicast_home(const posicast_stage *stage, uint32_t axis, const 
     if (result != POSICAST_OK)
         return result;
     if (homing->index_within != 0)
-        return seek_index(stage, axis, homing, ticks);
+        return seek_index(stage, axis, &homing->limits, homing->index_within, homing->position, ticks);
     /* The distance that the axis has moved since; positions wrap at 2^32, as in the hardware. */
     IOWR_POSICAST_AXIS_PRESET(stage->base, axis,
                               (uint32_t)homing->position + (uint32_t)position_of(stage, axis) - (uint32_t)found_at);
     return posicast_wait_flags(stage);
+}
+
+/* Moves back from the probe, which must then be free. */
+static posicast_result retract(const posicast_stage *stage, uint32_t axis, const posicast_probing *probing, uint32_t ticks)
+{
+    const int32_t back = probing->within < 0 ? probing->retract : -probing->retract;
+    const int64_t end = (int64_t)posicast_command_position(stage, axis) + back;
+    posicast_result result;
+
+    if (end < INT32_MIN || end > INT32_MAX)
+        return POSICAST_BAD_ARGUMENT;
+    result = posicast_queue_move(stage, axis, (int32_t)end, &probing->limits);
+    if (result == POSICAST_OK)
+        result = posicast_start(stage, 1u << axis);
+    if (result == POSICAST_OK)
+        result = posicast_wait_at_rest(stage, 1u << axis, ticks);
+    if (result != POSICAST_OK)
+        return result;
+    return posicast_status(stage, axis) & POSICAST_AXIS_STATUS_LEVEL_Z_MSK ? POSICAST_NO_REFERENCE : POSICAST_OK;
+}
+
+posicast_result posicast_home_by_probe(const posicast_stage *stage, uint32_t axis, const posicast_probing *probing, uint32_t ticks)
+{
+    const uint32_t touches = POSICAST_AXIS_STATUS_LEVEL_Z_MSK;
+    posicast_result result = POSICAST_OK;
+    int32_t found_at;
+
+    if (!is_axis(stage, axis) || probing->within == 0 || probing->retract <= 0 || probing->retract > INT32_MAX / 2)
+        return POSICAST_BAD_ARGUMENT;
+    if (posicast_state(stage, axis) != POSICAST_AXIS_STATUS_STATE_HOLD)
+        return POSICAST_WRONG_STATE;
+    if (posicast_status(stage, axis) & touches)
+        result = retract(stage, axis, probing, ticks);
+    if (result == POSICAST_OK)
+        result = seek(stage, axis, &probing->limits, probing->within, touches, touches, ticks, &found_at);
+    if (result == POSICAST_OK)
+        result = retract(stage, axis, probing, ticks);
+    if (result == POSICAST_OK)
+        result = seek_index(stage, axis, &probing->slow, (probing->within < 0 ? -2 : 2) * probing->retract, probing->position, ticks);
+    if (result == POSICAST_OK)
+        result = retract(stage, axis, probing, ticks);
+    return result;
 }
 
 int32_t posicast_origin(const posicast_stage *stage, uint32_t axis)
