@@ -147,7 +147,6 @@ pub(crate) const LASTING_DEVIATION: RegistryRow = RegistryRow {
     trials: || Ok(vec![trials::trial(SmallPart::LastingDeviation, "")]),
     mutants: trials::LASTING_DEVIATION,
     areas: || Ok(vec![AreaRow::new("", lasting_deviation::emit("")?)]),
-    ..RegistryRow::EMPTY
 };
 pub(crate) const PROBE_LINE: RegistryRow = RegistryRow {
     name: "probe_line",
