@@ -74,6 +74,7 @@ pub(super) fn run<'m>(
             text::table(axis, (bank, active), &taps)
         }
         Action::Move { line, .. } => Err(lacks("move", "its controller moves the axes", line)),
+        Action::Home { line, .. } => Err(lacks("home", "its controller homes the axes", line)),
         Action::Trace(trace) => Err(lacks("trace", "it has no trace memory", &trace.line)),
     }
 }

@@ -16,7 +16,7 @@ use posicast_blocks::segments::POSITION_FRACTION;
 use posicast_blocks::shaper::ShaperConfig;
 use posicast_blocks::sliding_mode::{Law, Settings};
 use posicast_blocks::stage::Supervision;
-use posicast_blocks::stage::{Follower, StageAxis, StageConfig, StageErrorTable, StageLoop, StageScale};
+use posicast_blocks::stage::{Follower, StageAxis, StageConfig, StageErrorTable, StageLoop, StageProbe, StageScale};
 use posicast_blocks::step_generator::{StepGeneratorConfig, StepLinesActiveLow, StepMode, StepTimes};
 use posicast_blocks::trace::TraceConfig;
 use posicast_hdl::machine::AxisShaper;
@@ -165,8 +165,8 @@ pub(crate) fn stage() -> Result<StageConfig, Error> {
     Ok(stage)
 }
 
-/// Three axes with steps, one for each mode of the lines: with trace memory, with a linear scale that watches the steps, and with
-/// lines that are active low.
+/// Three axes with steps, one for each mode of the lines: with trace memory; with a linear scale that watches the steps and shows
+/// which to correct; and with a probe and lines that are active low.
 pub(crate) fn stage_with_steps() -> Result<StageConfig, Error> {
     let times = StepTimes {
         pulse_clocks: 5,
@@ -182,6 +182,8 @@ pub(crate) fn stage_with_steps() -> Result<StageConfig, Error> {
             modulo: false,
             follower: Follower::Steps(steps),
             supervision: SUPERVISION,
+            probe: None,
+            corrects: false,
             scale: None,
             error_table: None,
             bring_up: None,
@@ -198,9 +200,19 @@ pub(crate) fn stage_with_steps() -> Result<StageConfig, Error> {
                 closes_loop: false,
                 invert: false,
             }),
+            corrects: true,
+            supervision: Supervision {
+                deviation_limit: 20,
+                deviation_ticks: 3,
+                ..SUPERVISION
+            },
             ..axis("y", StepMode::UpDown, tick_clocks)?
         };
         let mut z = axis("z", StepMode::Quadrature, tick_clocks)?;
+        z.probe = Some(StageProbe {
+            active_low: true,
+            filter_clocks: 3,
+        });
         if let Follower::Steps(steps) = &mut z.follower {
             *steps = steps.active_low(StepLinesActiveLow { a: true, b: false });
         }

@@ -5,8 +5,8 @@ use posicast_blocks::inline_group::InlineGroupConfig;
 use posicast_blocks::schedule::ScheduleConfig;
 use posicast_blocks::{
     divider_share as share_model, group as group_model, lasting_deviation as lasting_model, probe_line as probe_model,
-    realign as realign_model,
-    sample_select as select_model, schedule as schedule_model, setting_banks as banks_model, time_base as time_model,
+    realign as realign_model, sample_select as select_model, schedule as schedule_model, setting_banks as banks_model,
+    time_base as time_model,
 };
 use posicast_hdl::{
     divider_share, group, inline_group, lasting_deviation, probe_line, realign, sample_select, schedule, setting_banks,

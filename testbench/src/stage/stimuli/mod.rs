@@ -55,7 +55,7 @@ struct Mood {
 #[derive(Debug, Clone)]
 struct AxisPins {
     /// Indices of A, B and Z of the encoder, and of the linear scale if there is one: it moves as the motor does. An axis with steps
-    /// has only the index.
+    /// has only the index, or the probe.
     encoders: [[Option<usize>; 3]; 2],
     /// Indices of the limit switches, + and −.
     switches: [usize; 2],
@@ -130,9 +130,12 @@ impl StageRandom {
         let input = |name: &str| place(ports, Direction::Input, name);
         let of_axis = |axis: &String| {
             let encoder = |kind: &str| ["a", "b", "z"].map(|pin| input(&format!("{axis}_{kind}{pin}")));
+            // A probe takes the place of the index.
+            let [a, b, z] = encoder("");
+            let own = [a, b, z.or_else(|| input(&format!("{axis}_probe")))];
             let shown = ["a_high", "b_high", "drive_enable", "brake_release"];
             AxisPins {
-                encoders: [encoder(""), encoder("scale_")],
+                encoders: [own, encoder("scale_")],
                 switches: [0, 1].map(|which| input(&format!("{axis}_{}", LINES[which].0)).unwrap_or(0)),
                 shown: shown.map(|pin| place(ports, Direction::Output, &format!("{axis}_{pin}")).unwrap_or(0)),
                 moves: Moves::Still,
