@@ -20,9 +20,9 @@ impl Logic for Realign {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module realign");
-        self.align_q.d.next = self.enabled.val() | self.realign.val();
+        self.align_q.d.next = self.enabled.val() | self.correct.val();
         self.added.next = signed_bit_cast::<32, 16>(self.realign_steps.val());
-        if self.realign.val() {
+        if self.correct.val() {
             self.corrected.d.next = self.corrected.q.val() + self.added.val();
         }
         self.align.next = self.align_q.q.val();

@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! enabled    _/‾\_________________
-//! realign    _________/‾\_________   with realign_steps = 64
+//! correct    _________/‾\_________   with realign_steps = 64
 //! align      _____/‾\_____/‾\_____   a clock later
 //! corrected  ---- 0 ------| 64 ---
 //! ```
@@ -23,7 +23,7 @@ ports! {
         /// One clock: the axis was switched on.
         enabled: Bit as bool;
         /// One clock: the host accepts the deviation.
-        realign: Bit as bool;
+        correct: Bit as bool;
         /// Steps that it gives for it.
         realign_steps: Signed(16) as i32, "counts";
     }
@@ -60,8 +60,8 @@ impl Realign {
             *self = Self::default();
             return shown;
         }
-        self.align = inputs.enabled || inputs.realign;
-        if inputs.realign {
+        self.align = inputs.enabled || inputs.correct;
+        if inputs.correct {
             self.corrected = self.corrected.wrapping_add(inputs.realign_steps);
         }
         shown
@@ -94,9 +94,9 @@ mod tests {
     #[test]
     fn either_event_aligns_and_only_the_hosts_steps_count() {
         let mut block = Realign::new();
-        let of = |enabled, realign, realign_steps| Inputs {
+        let of = |enabled, correct, realign_steps| Inputs {
             enabled,
-            realign,
+            correct,
             realign_steps,
             ..Inputs::default()
         };

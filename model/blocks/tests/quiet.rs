@@ -241,7 +241,7 @@ fn blocks() -> Vec<Tried> {
         ),
         tried(
             "realign",
-            &[("rst", RARE), ("enabled", RARE), ("realign", RARE)],
+            &[("rst", RARE), ("enabled", RARE), ("correct", RARE)],
             Realign::new,
         ),
         tried(

@@ -63,7 +63,7 @@ pub(super) const PROBE_LINE: &[BlockMutant] = &[
     ),
 ];
 pub(super) const REALIGN: &[BlockMutant] = &[
-    BlockMutant::new("a correction that does not align", "enabled | realign", "enabled"),
+    BlockMutant::new("a correction that does not align", "enabled | correct", "enabled"),
     BlockMutant::new("steps without their sign", "{16{realign_steps[15]}}", "{16{1'b0}}"),
 ];
 pub(super) const SETTING_BANKS: &[BlockMutant] = &[

@@ -116,7 +116,7 @@ fn formal_an_emergency_stop_of_another_axis_on_no_wire_is_found() {
 #[test]
 fn formal_steps_without_the_supervisors_enable_are_found() {
     let wired = ".enable        (steps_enable)";
-    fails("stage_steps", wired, ".enable        (1'd1)", "steps");
+    fails("stage_steps", wired, ".enable        (1'd1)", "group_stop_steps");
 }
 
 #[test]

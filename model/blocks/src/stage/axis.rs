@@ -396,7 +396,7 @@ fn wire(axis: &StageAxis, tick_clocks: u32, block: &ComponentPart, part: Part) -
                 .tied("use_scale", on_scale.into()),
             None => part,
         },
-        ComponentPart::Realign => part.on("align", ALIGN),
+        ComponentPart::Realign => part.on("align", ALIGN).on("correct", "realign"),
         ComponentPart::ProbeLine => match axis.probe {
             Some(probe) => part
                 .tied("active_low", probe.active_low.into())
