@@ -76,20 +76,7 @@ pub(super) fn description(config: &InlineConfig, machine_crc: Option<u32>) -> De
                 Field::flag("fault", 1, "the axes have stopped with a cause"),
             ],
         )
-        .with_shadowed(
-            "time_stamp",
-            0x20,
-            0x40,
-            "clocks since reset",
-            vec![Field::new("time_stamp", 0, 32, "modulo 2^32").with_unit("clocks")],
-        )
-        .with_shadowed(
-            "tick_count",
-            0x21,
-            0x41,
-            "ticks since reset",
-            vec![Field::new("tick_count", 0, 32, "modulo 2^32").with_unit("ticks")],
-        );
+        .with_times(0x20, 0x40);
     for (window, axis) in (1..).zip(&config.axes) {
         let placed = window_of(axis)
             .into_iter()
@@ -110,59 +97,34 @@ fn window_of(axis: &InlineShaperAxis) -> Vec<Register> {
 }
 
 fn parameters(axis: &InlineShaperAxis) -> Vec<Register> {
-    let constant = |name: &str, offset, meaning: &str, value| {
-        let field = Field::new(name, 0, 32, meaning).with_reset(value);
-        Register::new(name, offset, Access::Constant, "parameter of the build", vec![field])
-    };
-    vec![
-        constant(
-            "step_period_clocks",
-            0x00,
-            "shortest time from step to step of the output in clocks",
-            axis.steps.period_clocks() as u32,
-        ),
-        constant(
-            "ring_samples",
-            0x01,
-            "size of the ring buffer: delays of a table reach up to this minus 2",
-            1 << axis.shaper.ring_address_bits(),
-        ),
-        constant("most_taps", 0x02, "taps per bank", axis.shaper.most_taps()),
-        constant(
-            "machine_taps",
-            0x03,
-            "number of taps of bank 0",
-            axis.shaper.table().taps().len() as u32,
-        ),
-        constant(
-            "coefficient_fraction",
-            0x04,
-            "number of fraction bits F of the coefficients",
-            axis.shaper.coefficient_fraction(),
-        ),
-        constant(
+    let mut registers = vec![tables::parameter(
+        "step_period_clocks",
+        0x00,
+        "shortest time from step to step of the output in clocks",
+        axis.steps.period_clocks() as u32,
+    )];
+    registers.extend(tables::axis_shaper(&axis.shaper));
+    registers.extend([
+        tables::parameter(
             "limit_steps",
             0x05,
             "largest number of steps of the input per tick",
             axis.follower.limit_steps(),
         ),
-        constant(
+        tables::parameter(
             "settle_ticks",
             0x06,
             "ticks without a step of the input until it may be settled",
             axis.follower.settle_ticks(),
         ),
-    ]
+    ]);
+    registers
 }
 
 fn loaded_tables(axis: &InlineShaperAxis) -> Vec<Register> {
-    vec![
-        tables::tap_address(&axis.shaper, 0x14),
-        tables::tap(&axis.shaper, 0x15),
-        tables::swap(&axis.shaper, 0x16),
-        tables::tap_read(0x27),
-        tables::tap_loaded(&axis.shaper, 0x3f),
-    ]
+    let mut registers = tables::axis_taps(&axis.shaper);
+    registers.push(tables::tap_loaded(&axis.shaper, 0x3f));
+    registers
 }
 
 fn states() -> Vec<Register> {

@@ -254,6 +254,26 @@ impl Description {
         )
     }
 
+    /// Adds `time_stamp` and `tick_count` at `offset` and the word after it, and their shadows at `shadow_offset` and the word after it.
+    #[must_use]
+    pub fn with_times(self, offset: u32, shadow_offset: u32) -> Self {
+        let count = |name: &str, unit: &str| vec![Field::new(name, 0, 32, "modulo 2^32").with_unit(unit)];
+        self.with_shadowed(
+            "time_stamp",
+            offset,
+            shadow_offset,
+            "clocks since reset",
+            count("time_stamp", "clocks"),
+        )
+        .with_shadowed(
+            "tick_count",
+            offset + 1,
+            shadow_offset + 1,
+            "ticks since reset",
+            count("tick_count", "ticks"),
+        )
+    }
+
     /// Adds `interrupt_state`, `interrupt_enable` and `interrupt_test` at `offset` and the two words after it.
     #[must_use]
     pub fn with_interrupts(self, offset: u32, fields: Vec<Field>) -> Self {

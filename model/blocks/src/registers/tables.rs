@@ -1,10 +1,51 @@
 //! Registers of the tables that a host loads: the taps of a shaper and the settings of a controller. The stand-alone components and
-//! the axes of a stage have them at different offsets.
+//! the axes have them at different offsets; the axes of a stage and of an inline shaper have those of the shaper at the same ones.
 
 use posicast_taps::COEFFICIENT_BITS;
 
 use super::{Access, Field, Register};
 use crate::shaper::ShaperConfig;
+
+/// A constant in a word of its own.
+pub(crate) fn parameter(name: &str, offset: u32, meaning: &str, value: u32) -> Register {
+    let field = Field::new(name, 0, 32, meaning).with_reset(value);
+    Register::new(name, offset, Access::Constant, "parameter of the build", vec![field])
+}
+
+/// The sizes of an axis's shaper, in words of the axis's window.
+pub(crate) fn axis_shaper(config: &ShaperConfig) -> Vec<Register> {
+    vec![
+        parameter(
+            "ring_samples",
+            0x01,
+            "size of the ring buffer: delays of a table reach up to this minus 2",
+            1 << config.ring_address_bits(),
+        ),
+        parameter("most_taps", 0x02, "taps per bank", config.most_taps()),
+        parameter(
+            "machine_taps",
+            0x03,
+            "number of taps of bank 0",
+            config.table().taps().len() as u32,
+        ),
+        parameter(
+            "coefficient_fraction",
+            0x04,
+            "number of fraction bits F of the coefficients",
+            config.coefficient_fraction(),
+        ),
+    ]
+}
+
+/// The registers by which a host loads an axis's tables and reads them back; [`tap_loaded`] is another word of the window.
+pub(crate) fn axis_taps(config: &ShaperConfig) -> Vec<Register> {
+    vec![
+        tap_address(config, 0x14),
+        tap(config, 0x15),
+        swap(config, 0x16),
+        tap_read(0x27),
+    ]
+}
 
 /// The register `tap_address`.
 pub(crate) fn tap_address(config: &ShaperConfig, offset: u32) -> Register {

@@ -18,37 +18,14 @@ pub(super) fn registers(axis: &StageAxis) -> Vec<Register> {
 }
 
 fn parameters(axis: &StageAxis) -> Vec<Register> {
-    let constant = |name: &str, offset, meaning: &str, value| {
-        let field = Field::new(name, 0, 32, meaning).with_reset(value);
-        Register::new(name, offset, Access::Constant, "parameter of the build", vec![field])
-    };
-    vec![
-        constant(
-            "pwm_period_clocks",
-            0x00,
-            "clocks of the PWM's period, which is full duty",
-            axis.closed_loop().map_or(0, |of| of.pwm_period_clocks),
-        ),
-        constant(
-            "ring_samples",
-            0x01,
-            "size of the ring buffer: delays of a table reach up to this minus 2",
-            1 << axis.shaper.ring_address_bits(),
-        ),
-        constant("most_taps", 0x02, "taps per bank", axis.shaper.most_taps()),
-        constant(
-            "machine_taps",
-            0x03,
-            "number of taps of bank 0",
-            axis.shaper.table().taps().len() as u32,
-        ),
-        constant(
-            "coefficient_fraction",
-            0x04,
-            "number of fraction bits F of the coefficients",
-            axis.shaper.coefficient_fraction(),
-        ),
-    ]
+    let mut registers = vec![tables::parameter(
+        "pwm_period_clocks",
+        0x00,
+        "clocks of the PWM's period, which is full duty",
+        axis.closed_loop().map_or(0, |of| of.pwm_period_clocks),
+    )];
+    registers.extend(tables::axis_shaper(&axis.shaper));
+    registers
 }
 
 fn commands() -> Vec<Register> {
@@ -147,11 +124,8 @@ fn commands() -> Vec<Register> {
 }
 
 fn loaded_tables(axis: &StageAxis) -> Vec<Register> {
-    vec![
-        tables::tap_address(&axis.shaper, 0x14),
-        tables::tap(&axis.shaper, 0x15),
-        tables::swap(&axis.shaper, 0x16),
-        tables::tap_read(0x27),
+    let mut registers = tables::axis_taps(&axis.shaper);
+    registers.extend([
         tables::setting_address(0x17),
         tables::setting(0x18),
         tables::setting_read(0x26),
@@ -165,7 +139,8 @@ fn loaded_tables(axis: &StageAxis) -> Vec<Register> {
                 tables::setting_bank("law_bank"),
             ],
         ),
-    ]
+    ]);
+    registers
 }
 
 fn supervision(axis: &StageAxis) -> Vec<Register> {

@@ -99,20 +99,7 @@ pub(super) fn stage(config: &StageConfig) -> Description {
             "feed hold: these axes stand once all of them rest in one tick, and keep their waiting entries",
             feed_holds(config),
         )
-        .with_shadowed(
-            "time_stamp",
-            0x20,
-            0x40,
-            "clocks since reset",
-            vec![Field::new("time_stamp", 0, 32, "modulo 2^32").with_unit("clocks")],
-        )
-        .with_shadowed(
-            "tick_count",
-            0x21,
-            0x41,
-            "ticks since reset",
-            vec![Field::new("tick_count", 0, 32, "modulo 2^32").with_unit("ticks")],
-        );
+        .with_times(0x20, 0x40);
     for ((window, axis), registers) in (1..).zip(&config.axes).zip(windows) {
         let placed = registers
             .into_iter()

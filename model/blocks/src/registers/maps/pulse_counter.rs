@@ -101,20 +101,7 @@ pub fn pulse_counter(divider: &DividerConfig, filter_clocks: u32, invert: bool) 
                     .with_unit("counts/tick"),
             ],
         )
-        .with_shadowed(
-            "time_stamp",
-            0x22,
-            0x32,
-            "clocks since reset",
-            vec![Field::new("time_stamp", 0, 32, "modulo 2^32").with_unit("clocks")],
-        )
-        .with_shadowed(
-            "tick_count",
-            0x23,
-            0x33,
-            "ticks since reset",
-            vec![Field::new("tick_count", 0, 32, "modulo 2^32").with_unit("ticks")],
-        )
+        .with_times(0x22, 0x32)
         .with_shadowed(
             "count",
             0x24,
