@@ -4,10 +4,9 @@
 use std::time::Duration;
 
 use crate::faults::Line;
+use crate::stage::Constants;
 use posicast_blocks::component::Component;
-use posicast_blocks::link::Bus;
 use posicast_blocks::linked_stage::address_limit;
-use posicast_blocks::registers::Access;
 use posicast_closed_loop::inline_bench::InlineBench;
 use posicast_closed_loop::linked_bench::{LinkedBench, Registered};
 use posicast_host::{HostError, HostedInline, Link, LinkOptions};
@@ -151,28 +150,11 @@ fn a_table_is_loaded_read_back_and_used_and_loses_no_step() {
     assert!(refused.contains("`coefficient_fraction = 16`"), "{refused}");
 }
 
-/// Constants, one of them changed.
-struct Constants(Vec<u32>);
-
-impl Bus for Constants {
-    fn read(&mut self, address: u16) -> u32 {
-        self.0.get(usize::from(address)).copied().unwrap_or(0)
-    }
-
-    fn write(&mut self, address: u16, word: u32) {
-        panic!("{word:#x} was written to {address:#x} of another machine");
-    }
-}
-
 #[test]
 fn another_inline_shaper_and_a_stage_are_refused() {
     let machine = machine();
     let component = component(&machine);
-    let constants = component.map().registers().iter();
-    let constants: Vec<u32> = constants
-        .take_while(|own| own.access == Access::Constant)
-        .map(|register| register.reset())
-        .collect();
+    let constants = Constants::of(&component);
     let opened = |place: usize, word: u32| {
         let mut words = constants.clone();
         words[place] = word;

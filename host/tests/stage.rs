@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use crate::faults::Line;
 use posicast_blocks::axis::SupervisorState;
+use posicast_blocks::component::Component;
 use posicast_blocks::link::Bus;
 use posicast_blocks::linked_stage::address_limit;
 use posicast_blocks::registers::Access;
@@ -206,8 +207,17 @@ fn calls_take_the_clocks_of_the_page() {
     assert!(found.iter().zip(&expected).all(near), "{found:?}");
 }
 
-/// Constants of the stage, one of them changed.
-struct Constants(Vec<u32>);
+/// Hardware that has nothing but the constants at the beginning of its registers.
+pub(crate) struct Constants(pub(crate) Vec<u32>);
+
+impl Constants {
+    /// The constants of this hardware.
+    pub(crate) fn of(component: &Component) -> Vec<u32> {
+        let registers = component.map().registers().iter();
+        let constants = registers.take_while(|own| own.access == Access::Constant);
+        constants.map(|register| register.reset()).collect()
+    }
+}
 
 impl Bus for Constants {
     fn read(&mut self, address: u16) -> u32 {
@@ -223,11 +233,7 @@ impl Bus for Constants {
 fn another_stage_is_refused_with_what_was_found_and_expected() {
     let machine = machine();
     let stage = stage(&machine);
-    let constants = stage.component.map().registers().iter();
-    let constants: Vec<u32> = constants
-        .take_while(|own| own.access == Access::Constant)
-        .map(|register| register.reset())
-        .collect();
+    let constants = Constants::of(&stage.component);
     let opened = |place: usize, word: u32| {
         let mut words = constants.clone();
         words[place] = word;

@@ -1,5 +1,6 @@
 //! `posicast host`, on the model of the stage with its machine behind a pseudo-terminal.
 
+use super::served::{Served, host};
 use super::support::{assert_fits_schema, example, generate, json, posicast, scratch};
 use posicast_blocks::linked_stage::address_limit;
 use posicast_closed_loop::linked_bench::LinkedBench;
@@ -10,11 +11,6 @@ use posicast_machine::plan::design_machine;
 use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
 use serialport::{SerialPort, TTYPort};
 use std::path::Path;
-use std::process::Output;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::thread::JoinHandle;
-use std::time::Duration;
 
 /// The example with a line, and for X a trace and room for a test signal.
 fn machine() -> String {
@@ -24,71 +20,29 @@ fn machine() -> String {
     format!("{text}[link]\nbaud = 3_000_000\n")
 }
 
-/// A stage with its machine at a port, until it is dropped.
-struct Served {
-    port: String,
-    ends: Arc<AtomicBool>,
-    thread: Option<JoinHandle<[i64; 2]>>,
-}
-
-impl Served {
-    fn new(text: &str) -> Self {
-        let (mut far, near) = TTYPort::pair().unwrap();
-        let port = near.name().unwrap();
-        // One program holds a port: the command opens it again.
-        drop(near);
-        far.set_timeout(Duration::from_millis(2)).unwrap();
-        let ends = Arc::new(AtomicBool::new(false));
-        let (text, until) = (text.to_owned(), Arc::clone(&ends));
-        // Model and plants are made in their thread.
-        let thread = std::thread::spawn(move || {
-            let machine = machine_file::parse("machine.toml", &text).unwrap();
-            let design = design_machine(&machine).unwrap();
-            let hardware = Hardware::of(&machine, &design).unwrap();
-            let stage = hardware.stage().unwrap().unwrap();
-            let plant = |axis| AxisPlant::new(axis, &machine.clock, &PlantOptions::default()).unwrap();
-            let plants = machine.axes.iter().map(plant).collect();
-            let bench = StageBench::new(&stage.of_machine.config, &stage.component, plants, None, 1).unwrap();
-            let limit = address_limit(&stage.component);
-            let mut linked = LinkedBench::new(bench, &machine.link.unwrap(), &machine.clock, limit);
-            linked.serve(far, &until).unwrap();
-            [0, 1].map(|axis| linked.bench.plant(axis).count())
-        });
-        Self {
-            port,
-            ends,
-            thread: Some(thread),
-        }
-    }
-
-    /// Ends it, and returns where the axes of the machine are, in counts.
-    fn end(mut self) -> [i64; 2] {
-        self.ends.store(true, Ordering::Relaxed);
-        self.thread.take().unwrap().join().unwrap()
-    }
-}
-
-impl Drop for Served {
-    fn drop(&mut self) {
-        self.ends.store(true, Ordering::Relaxed);
-    }
-}
-
-fn host(port: &str, machine: &Path, words: &[&str]) -> (Option<i32>, String, String) {
-    let mut command = posicast();
-    command.args(["host", port]).args(words);
-    // The simulation is slower than a stage.
-    command.arg("--machine").arg(machine).args(["--timeout", "4000"]);
-    let Output { status, stdout, stderr } = command.output().unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    (status.code(), text(stdout), text(stderr))
+/// A stage with its machine at a port; its end returns where the axes of the machine are, in counts.
+fn served(text: &str) -> Served<[i64; 2]> {
+    let text = text.to_owned();
+    Served::new(move |far, until| {
+        let machine = machine_file::parse("machine.toml", &text).unwrap();
+        let design = design_machine(&machine).unwrap();
+        let hardware = Hardware::of(&machine, &design).unwrap();
+        let stage = hardware.stage().unwrap().unwrap();
+        let plant = |axis| AxisPlant::new(axis, &machine.clock, &PlantOptions::default()).unwrap();
+        let plants = machine.axes.iter().map(plant).collect();
+        let bench = StageBench::new(&stage.of_machine.config, &stage.component, plants, None, 1).unwrap();
+        let limit = address_limit(&stage.component);
+        let mut linked = LinkedBench::new(bench, &machine.link.unwrap(), &machine.clock, limit);
+        linked.serve(far, until).unwrap();
+        [0, 1].map(|axis| linked.bench.plant(axis).count())
+    })
 }
 
 #[test]
 fn cli_host_shows_moves_records_and_loads() {
     let text = machine();
     let (folder, file) = scratch(&text);
-    let served = Served::new(&text);
+    let served = served(&text);
     let run = |words: &[&str]| host(&served.port, &file, words);
     let (code, said, error) = run(&["status", "--json"]);
     assert_eq!(code, Some(0), "{error}");

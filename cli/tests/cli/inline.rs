@@ -1,5 +1,6 @@
 //! The inline shaper on the command line: from the example to Verilog that equals its model, a host at its line, and files that are refused.
 
+use super::served::{Served, host};
 use super::support::{assert_fits_schema, example, generate, json, posicast, scratch};
 use posicast_blocks::linked_stage::address_limit;
 use posicast_closed_loop::inline_bench::InlineBench;
@@ -8,13 +9,6 @@ use posicast_machine::hardware::Hardware;
 use posicast_machine::machine_file;
 use posicast_machine::plan::design_machine;
 use predicates::prelude::*;
-use serialport::{SerialPort, TTYPort};
-use std::path::Path;
-use std::process::Output;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::thread::JoinHandle;
-use std::time::Duration;
 
 fn text() -> String {
     std::fs::read_to_string(example("inline.toml")).unwrap()
@@ -201,67 +195,29 @@ fn cli_inline_verilog_with_a_line_equals_its_model() {
         .stdout(predicate::str::contains("linked_inline_shaper"));
 }
 
-/// An inline shaper with a controller at a port, until it is dropped.
-struct Served {
-    port: String,
-    ends: Arc<AtomicBool>,
-    thread: Option<JoinHandle<()>>,
-}
-
-impl Served {
-    /// The controller gives the axis X so many steps.
-    fn new(text: &str, steps: i64) -> Self {
-        let (mut far, near) = TTYPort::pair().unwrap();
-        let port = near.name().unwrap();
-        // One program holds a port: the command opens it again.
-        drop(near);
-        far.set_timeout(Duration::from_millis(2)).unwrap();
-        let ends = Arc::new(AtomicBool::new(false));
-        let (text, until) = (text.to_owned(), Arc::clone(&ends));
-        let thread = std::thread::spawn(move || {
-            let machine = machine_file::parse("machine.toml", &text).unwrap();
-            let design = design_machine(&machine).unwrap();
-            let hardware = Hardware::of(&machine, &design).unwrap();
-            let component = hardware.inline().unwrap().unwrap().component.clone().unwrap();
-            let mut bench = InlineBench::new(&component, 1).unwrap();
-            bench.clocks(3_000_000).unwrap();
-            bench.steps("x", steps).unwrap();
-            bench.clocks(4_000_000).unwrap();
-            let limit = address_limit(&component);
-            let mut linked = LinkedBench::new(bench, &machine.link.unwrap(), &machine.clock, limit);
-            linked.serve(far, &until).unwrap();
-        });
-        Self {
-            port,
-            ends,
-            thread: Some(thread),
-        }
-    }
-}
-
-impl Drop for Served {
-    fn drop(&mut self) {
-        self.ends.store(true, Ordering::Relaxed);
-        let ended = self.thread.take().map(JoinHandle::join);
-        assert!(ended.is_none_or(|ended| ended.is_ok()) || std::thread::panicking());
-    }
-}
-
-fn host(port: &str, machine: &Path, words: &[&str]) -> (Option<i32>, String, String) {
-    let mut command = posicast();
-    command.args(["host", port]).args(words);
-    // The simulation is slower than the hardware.
-    command.arg("--machine").arg(machine).args(["--timeout", "4000"]);
-    let Output { status, stdout, stderr } = command.output().unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    (status.code(), text(stdout), text(stderr))
+/// An inline shaper at a port, whose controller gives the axis X so many steps.
+fn served(text: &str, steps: i64) -> Served<()> {
+    let text = text.to_owned();
+    Served::new(move |far, until| {
+        let machine = machine_file::parse("machine.toml", &text).unwrap();
+        let design = design_machine(&machine).unwrap();
+        let hardware = Hardware::of(&machine, &design).unwrap();
+        let component = hardware.inline().unwrap().unwrap().component.clone().unwrap();
+        let mut bench = InlineBench::new(&component, 1).unwrap();
+        bench.clocks(3_000_000).unwrap();
+        bench.steps("x", steps).unwrap();
+        bench.clocks(4_000_000).unwrap();
+        let limit = address_limit(&component);
+        let mut linked = LinkedBench::new(bench, &machine.link.unwrap(), &machine.clock, limit);
+        linked.serve(far, until).unwrap();
+    })
 }
 
 #[test]
 fn cli_inline_host_shows_counts_switches_the_shaping_and_loads() {
     let text = linked();
     let (folder, file) = scratch(&text);
-    let served = Served::new(&text, -120);
+    let served = served(&text, -120);
     let run = |words: &[&str]| host(&served.port, &file, words);
     let (code, said, error) = run(&["status", "--json"]);
     assert_eq!(code, Some(0), "{error}");

@@ -43,6 +43,7 @@ mod pages;
 mod replay;
 mod report;
 mod schema;
+mod served;
 #[cfg(target_os = "linux")]
 mod signals;
 mod tutorial;
