@@ -7,12 +7,10 @@
 use std::io::{Read, Write};
 
 use posicast_blocks::axis::SupervisorState;
+use posicast_blocks::segments::POSITION_FRACTION;
 
 use crate::moves::HostMove;
 use crate::{HostError, HostedStage};
-
-/// Fraction bits of the soft limits.
-const LIMIT_FRACTION: u32 = 8;
 
 /// What a correction did.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -69,7 +67,7 @@ impl<L: Read + Write> HostedStage<'_, L> {
             return Ok(());
         };
         let homed = self.field(axis, "status", "homed")?.of(status);
-        let shifted = |word: u32| (word as i32).saturating_add(steps << LIMIT_FRACTION) as u32;
+        let shifted = |word: u32| (word as i32).saturating_add(steps << POSITION_FRACTION) as u32;
         let mut writes = vec![
             ("preset", (position as i32).wrapping_sub(steps) as u32),
             ("realign", u32::from(steps as i16 as u16)),

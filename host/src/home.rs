@@ -4,19 +4,18 @@
 //!   stands ─► approach ─► touches, stops ─► retract ─► slow approach, PRESET armed ─► touches, stops ─► retract
 //! ```
 //!
-//! The pulse counter latches the position in the clock of the contact, as at an index: how fast the host looks does not matter.
+//! The pulse counter latches the position a fixed number of clocks after the contact, as at an index: how fast the host looks does not
+//! matter.
 
 use std::io::{Read, Write};
 
 use posicast_blocks::axis::SupervisorState;
+use posicast_blocks::segments::POSITION_FRACTION;
 use posicast_machine::machine_file::ProbeSection;
 
 use crate::moves::HostMove;
 use crate::stage::{PATIENCE_TICKS, fault};
 use crate::{HostError, HostedStage};
-
-/// Fraction bits of the soft limits.
-const LIMIT_FRACTION: u32 = 8;
 
 /// Where a search ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -148,7 +147,7 @@ impl<L: Read + Write> HostedStage<'_, L> {
 
     /// Shifts the soft limits of the machine file to the origin, and says that the axis is homed.
     fn limit_travel(&mut self, axis: usize) -> Result<(), HostError> {
-        let origin = i64::from(self.read_one(axis, "origin")? as i32) << LIMIT_FRACTION;
+        let origin = i64::from(self.read_one(axis, "origin")? as i32) << POSITION_FRACTION;
         // After a reset the registers have the words of the file.
         let words = ["soft_limit_minus", "soft_limit_plus"].map(|name| {
             let register = self.register(&self.of(axis, name))?;

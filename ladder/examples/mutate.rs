@@ -5,7 +5,7 @@
 //! --block NAME    only this block                    --mutants N   per block (60)
 //! --seed S        of the choice of mutants (1)       --clocks C    per run of stimuli (1,000,000)
 //! --write         renews the table in ladder/RESULTS.md, or the rows of the block
-//! --search        searches inputs and proofs for the mutants listed there as unknown again, as --write does: an hour
+//! --search        searches inputs and proofs for the mutants listed there as unknown again, as --write does: up to eight minutes each
 //! --wires         each constant and wire of the description of two stages instead, those of examples/xy-stage.toml and
 //!                 examples/printer.toml; --mutants takes so many of each
 //! --inside        the named mutants inside the stage of examples/xy-stage.toml instead, as `verify DIR` looks for them

@@ -76,14 +76,12 @@ pub(super) const KEYS: &[Key] = &[
         "probe",
         Values::Table(probe::KEYS),
         "Touch switch at which the axis is homed.",
-    )
-    .rule("needs `[axis.steps]`"),
+    ),
     Key::new(
         "correction",
         Values::Table(correction::KEYS),
         "Missing steps that a host gives while the axis rests.",
-    )
-    .rule("needs `[axis.steps]` and `[axis.scale]`"),
+    ),
     Key::new(
         "input",
         Values::Table(input::KEYS),
