@@ -35,14 +35,17 @@ fn number(kind: FaultKind) -> u64 {
 
 /// Runs one case of that kind on a machine whose stage has a supervision that differs from the expected one.
 fn on_a_changed_stage(kind: FaultKind, change: fn(&mut Supervision)) -> FaultReport {
-    let mut bed = Bed::new().unwrap();
+    on_a_changed(Bed::new().unwrap(), kind, change)
+}
+
+fn on_a_changed(mut bed: Bed, kind: FaultKind, change: fn(&mut Supervision)) -> FaultReport {
     // The expectations do not change.
     let mut config = bed.stage.config.clone();
     for axis in &mut config.axes {
         change(&mut axis.supervision);
     }
     bed.component = Component::stage(&config).unwrap();
-    let first = number(kind);
+    let first = bed.rows.iter().position(|row| row.kind == kind).unwrap() as u64;
     run(&bed, first..first + 1, SEED, 1).unwrap()
 }
 
@@ -65,7 +68,7 @@ fn every_fault_of_an_axis_with_steps_is_handled_as_stated() {
     let bed = Bed::with_steps().unwrap();
     let report = run(&bed, 0..ROUNDS * bed.rows.len() as u64, SEED, threads()).unwrap();
     assert_eq!(report.failures(), [""; 0], "{report}");
-    assert!(report.kinds().len() == 26 && report.kinds().iter().all(|kind| kind.cases == ROUNDS));
+    assert!(report.kinds().len() == 27 && report.kinds().iter().all(|kind| kind.cases == ROUNDS));
 }
 
 #[test]
@@ -191,6 +194,14 @@ fn mutate_a_watch_of_motion_alone_does_not_see_a_wrong_sign() {
         });
         assert_ne!(report.failures(), [""; 0], "{kind:?}");
     }
+}
+
+#[test]
+fn mutate_a_deviation_that_acts_at_once_stops_at_an_excursion() {
+    let report = on_a_changed(Bed::with_steps().unwrap(), FaultKind::Excursion, |watched| {
+        watched.deviation_ticks = 0;
+    });
+    assert_says(&report, &format!("causes {:#x}", Cause::Deviation.bit()));
 }
 
 #[test]

@@ -26,6 +26,12 @@ const OVERFLOWING: Entry = Entry {
     notify: false,
 };
 
+/// Distance in counts by which an axis leaves its command for a short time, and the part of it that it moves at once, so
+/// that the counter follows.
+const EXCURSION_COUNTS: u32 = 75;
+const EXCURSION_PART: u32 = 3;
+/// Clocks for such a part.
+const EXCURSION_PART_CLOCKS: u64 = 100;
 /// Size of a disturbance in counts.
 const PUSH_COUNTS: f64 = 3.0;
 /// Distance in counts to a point that is within the position word, but so far away that e exceeds its own word.
@@ -82,6 +88,7 @@ pub(super) fn begin(bench: &mut StageBench, case: &Case) -> Result<(), Error> {
     match case.row.kind {
         FaultKind::Reset => return bench.set("rst", 1),
         FaultKind::StartAgain => return bench.write("start", 3),
+        FaultKind::Excursion => return excursion(bench, case, 1.0),
         _ => {}
     }
     for axis in case.hit_axes() {
@@ -202,6 +209,18 @@ fn reverse_and_push(bench: &mut StageBench, case: &Case, axis: usize) {
     bench.displace(axis, PUSH_COUNTS * case.counts[axis].signum() as f64);
 }
 
+/// Displaces the axes that are hit, all at the same time; with −1 for `way`, back.
+fn excursion(bench: &mut StageBench, case: &Case, way: f64) -> Result<(), Error> {
+    let side = if case.choice & 1 == 0 { way } else { -way };
+    for _ in 0..EXCURSION_COUNTS / EXCURSION_PART {
+        for axis in case.hit_axes() {
+            bench.displace(axis, side * f64::from(EXCURSION_PART));
+        }
+        bench.clocks(EXCURSION_PART_CLOCKS)?;
+    }
+    Ok(())
+}
+
 /// Holds A or B at its level.
 fn stuck(case: &Case, lines: EncoderPins) -> Wire {
     match case.choice & 1 {
@@ -236,6 +255,9 @@ pub(super) fn end(bench: &mut StageBench, case: &Case, way_back: bool) -> Result
     let kind = case.row.kind;
     if kind == FaultKind::Reset {
         return bench.set("rst", 0);
+    }
+    if kind == FaultKind::Excursion {
+        return excursion(bench, case, -1.0);
     }
     if let Some(line) = shared_line(kind) {
         return bench.set(line, 1);

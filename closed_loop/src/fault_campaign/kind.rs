@@ -56,6 +56,7 @@ pub enum FaultKind {
     StepsCut,
     StepsReversed,
     TooFast,
+    Excursion,
 }
 
 /// A row of the table.

@@ -62,6 +62,7 @@ pub fn run_case(bed: &Bed, case: &Case, device: Option<Box<dyn Device>>) -> Resu
         bed,
         case,
         bench,
+        lifted: false,
         failures: Vec::new(),
         figures: Figures::default(),
     };
@@ -81,6 +82,8 @@ struct Running<'a> {
     bed: &'a Bed,
     case: &'a Case,
     bench: StageBench,
+    /// Whether the fault has already been removed.
+    lifted: bool,
     failures: Vec<String>,
     figures: Figures,
 }
@@ -272,6 +275,7 @@ impl Running<'_> {
             let now = self.bench.now();
             if lifted == Some(now) {
                 end(&mut self.bench, self.case, false)?;
+                self.lifted = true;
             }
             let tick = self.bench.at(tick_net) != 0;
             axes.iter_mut().for_each(|axis| axis.before(&self.bench, tick));
@@ -353,8 +357,9 @@ impl Running<'_> {
 
     /// Removes the fault, clears, switches on what is off, and moves both axes back a little.
     fn recover(&mut self) -> Result<(), Error> {
-        let held = self.case.lasts.is_none();
-        end(&mut self.bench, self.case, held)?;
+        if !self.lifted {
+            end(&mut self.bench, self.case, self.case.lasts.is_none())?;
+        }
         self.bench.clocks(RINGING_CLOCKS)?;
         let known = self.case.row.expects.position_known && self.case.row.expects.reaction != Reaction::Reset;
         if !known {

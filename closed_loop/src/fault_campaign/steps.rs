@@ -6,9 +6,9 @@ use posicast_blocks::axis::Cause;
 use posicast_blocks::step_generator::{StepLinesActiveLow, StepMode, StepTimesInSeconds};
 use posicast_machine::machine_file::{AxisSection, LimitsSection, StepsSection};
 
-use super::expectation::{Due, Expectation, FAULT, Seen, bits};
+use super::expectation::{Due, Expectation, FAULT, Lasts, NOTHING, Seen, bits};
 use super::kind::{FaultKind, FaultRow, TABLE};
-use super::machine::{STALL_TICKS, TICK_S};
+use super::machine::{STALL_TICKS, TICK_CLOCKS, TICK_S};
 
 /// A million steps per second, four times the largest velocity.
 const TIMES: StepTimesInSeconds = StepTimesInSeconds {
@@ -46,6 +46,9 @@ const COMMON: [FaultKind; 23] = [
 ];
 /// Part of the move in which so many steps are missed that the scale shows it.
 const IN_MOTION: [u64; 2] = [15, 50];
+
+/// Longest excursion in clocks: shorter than a stall by the time in which it goes and comes back.
+const LONGEST_EXCURSION: u64 = (STALL_TICKS - 3) * TICK_CLOCKS;
 
 /// Replaces the loop of an axis by steps.
 pub(super) fn change(axis: &mut AxisSection) {
@@ -113,6 +116,15 @@ pub(super) fn rows() -> Vec<FaultRow> {
             expects: Expectation {
                 position_known: false,
                 ..DEVIATES
+            },
+        },
+        FaultRow {
+            kind: FaultKind::Excursion,
+            name: "short excursion",
+            injected: "the load is displaced beyond `limits.deviation`, for less than `limits.deviation_s`",
+            expects: Expectation {
+                lasts: Lasts::Clocks(TICK_CLOCKS, LONGEST_EXCURSION),
+                ..NOTHING
             },
         },
         FaultRow {
