@@ -5,7 +5,7 @@ pub(crate) mod proofs;
 pub(crate) mod stimuli;
 mod trials;
 
-pub use self::stimuli::PartRandom;
+pub use self::stimuli::{LastingRandom, PartRandom};
 
 use posicast_blocks::component::ComponentPart as Model;
 use posicast_blocks::divider::DividerConfig;
@@ -346,7 +346,10 @@ impl Block for PartBlock {
     }
 
     fn stimuli(&self, _cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {
-        Box::new(PartRandom::new(&self.ports(), seed))
+        match self.part {
+            SmallPart::LastingDeviation => Box::new(LastingRandom::new(seed)),
+            _ => Box::new(PartRandom::new(&self.ports(), seed)),
+        }
     }
 
     fn coverage(&self) -> Box<dyn Bins + '_> {

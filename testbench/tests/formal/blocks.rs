@@ -245,3 +245,33 @@ fn formal_shaping_that_changes_in_motion_is_found() {
         "changes_at_rest",
     );
 }
+
+#[test]
+fn formal_a_deviation_that_is_passed_on_a_tick_late_is_found() {
+    fails("lasting_deviation", "count >= ticks", "count > ticks", "");
+}
+
+#[test]
+fn formal_a_count_that_goes_on_after_an_excursion_is_found() {
+    fails("lasting_deviation", "count_next = 16'd0", "count_next = count", "");
+}
+
+#[test]
+fn formal_a_probe_of_the_other_polarity_is_found() {
+    fails("probe_line", "probe ^ active_low", "probe", "");
+}
+
+#[test]
+fn formal_a_probe_that_is_filtered_from_its_reset_on_is_found() {
+    fails("probe_line", "primed[3] & (|filter_clocks)", "(|filter_clocks)", "");
+}
+
+#[test]
+fn formal_a_correction_after_which_nothing_counts_anew_is_found() {
+    fails("realign", "enabled | correct", "enabled", "aligns_after");
+}
+
+#[test]
+fn formal_steps_of_a_correction_without_their_sign_are_found() {
+    fails("realign", "{16{realign_steps[15]}}", "{16{1'b0}}", "counts_the_hosts");
+}
