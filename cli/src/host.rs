@@ -22,7 +22,7 @@ pub(crate) use self::inline::Document as InlineStatusDocument;
 pub(crate) use self::text::Document as StatusDocument;
 
 /// Operate a stage through its serial line, SPI or a network: show its state, move, home, record, load a shaper; of an inline shaper
-/// show the state, switch the shaping, load a shaper
+/// show the state, switch the shaping, record, load a shaper
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -38,7 +38,7 @@ Examples:
 Give the machine file from which the FPGA was built; for a serial line or SPI it has a table [link]. At a UDP address,
 posicast_serve must run, from linux/ of the C driver.
 
-An inline shaper has status, bypass, load and table: its controller moves the axes.
+An inline shaper has status, bypass, trace, load and table: its controller moves the axes.
 
 Exit status: 1 the stage did not carry out the request, 2 bad input or another machine, 3 no port or no reply.")]
 pub(crate) struct Args {
@@ -132,7 +132,7 @@ struct TraceArgs {
     #[arg(short, long, value_name = "FILE.csv|FILE.vcd")]
     output: PathBuf,
     /// Signals: one, two or four, separated by commas [default: command_position, shaped_position, captured_position and error; with
-    /// --shake those that posicast identify needs]
+    /// --shake those that posicast identify needs; of an inline shaper input_position and output_position]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     signals: Vec<String>,
     /// Record a row every TICKS ticks [default: 1; with --shake and a scale 2]
@@ -206,6 +206,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         .hardware
         .inline()
         .map_err(|error| machine::of_hardware(&error, path))?;
+    if let Action::Trace(trace) = &args.action {
+        // Report errors of the file before the machine moves.
+        actions::check_output(trace)?;
+    }
     if let Some(component) = inline.and_then(|inline| inline.component.as_ref()) {
         return inline::run(&args.action, &machine, || {
             let link = way.open(options(line.timeout)).map_err(|error| failure(error.into()))?;
@@ -216,10 +220,6 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         Failure::input(format!("{}: the machine has no stage", path.display()))
             .with_help("give every axis encoder, PWM, drive and controller")
     })?;
-    if let Action::Trace(trace) = &args.action {
-        // Report errors of the file before the machine moves.
-        actions::check_output(trace)?;
-    }
     let open = || open(&way, line.timeout, &machine, stage);
     match &args.action {
         Action::Status { json, .. } => text::status(&mut open()?, *json),

@@ -10,7 +10,7 @@ use posicast_machine::machine_file::Machine;
 use posicast_taps::{Tap, TapTable};
 
 use crate::stage::PATIENCE_TICKS;
-use crate::{HostError, HostedStage, Link};
+use crate::{HostError, HostedStage, Link, RecordedTrace, TraceRequest};
 
 /// An inline shaper, and the machine that it was made for.
 #[derive(Debug)]
@@ -189,5 +189,17 @@ impl<'m, L: Read + Write> HostedInline<'m, L> {
     /// Those of [`HostedStage::read_table`].
     pub fn read_table(&mut self, axis: usize, bank: u32) -> Result<Vec<Tap>, HostError> {
         self.registers.read_table(axis, bank)
+    }
+
+    /// Records positions of an axis until its memory is full, and reads it. The recording begins immediately; the axes do what their
+    /// controller wants meanwhile.
+    ///
+    /// # Errors
+    /// [`HostError`]; [`HostError::Trace`] for a request that the hardware cannot fulfil: it makes no test signal.
+    pub fn trace(&mut self, request: &TraceRequest) -> Result<RecordedTrace, HostError> {
+        if request.shake.is_some() {
+            return Err(HostError::Trace("an inline shaper makes no test signal".to_owned()));
+        }
+        self.registers.trace_while(request, |_| Ok(()))
     }
 }

@@ -141,6 +141,21 @@ impl<L: Read + Write> HostedStage<'_, L> {
     /// # Errors
     /// [`HostError`]; [`HostError::Trace`] for a request that the hardware cannot fulfil.
     pub fn trace(&mut self, request: &TraceRequest) -> Result<RecordedTrace, HostError> {
+        self.trace_while(request, |stage| {
+            let status = &stage.status()?[request.axis];
+            if status.causes & !crate::stage::AFTER_RESET != 0 {
+                return Err(fault(status));
+            }
+            Ok(())
+        })
+    }
+
+    /// As [`trace`](Self::trace), while this check holds.
+    pub(crate) fn trace_while(
+        &mut self,
+        request: &TraceRequest,
+        holds: impl FnMut(&mut Self) -> Result<(), HostError>,
+    ) -> Result<RecordedTrace, HostError> {
         let axis = request.axis;
         let chosen = self.chosen(request)?;
         if !(1..=1 << 16).contains(&request.every_ticks) {
@@ -171,7 +186,7 @@ impl<L: Read + Write> HostedStage<'_, L> {
         ];
         words.extend(shake.into_iter().flatten());
         self.write(&words)?;
-        self.recorded(axis, ticks)?;
+        self.recorded(axis, ticks, holds)?;
         if request.shake.is_some() {
             self.write_one(axis, "excitation", 0)?;
         }
@@ -250,18 +265,20 @@ impl<L: Read + Write> HostedStage<'_, L> {
         ])
     }
 
-    /// Waits until the memory is full.
-    fn recorded(&mut self, axis: usize, ticks: u32) -> Result<(), HostError> {
+    /// Waits until the memory is full, as long as the check holds.
+    fn recorded(
+        &mut self,
+        axis: usize,
+        ticks: u32,
+        mut holds: impl FnMut(&mut Self) -> Result<(), HostError>,
+    ) -> Result<(), HostError> {
         let state = self.field(axis, "trace_status", "trace_state")?;
         let mut left = self.patience(ticks.saturating_add(PATIENCE_TICKS))?;
         while state.of(self.read_one(axis, "trace_status")?) != 0 {
-            let status = &self.status()?[axis];
-            if status.causes & !crate::stage::AFTER_RESET != 0 {
-                return Err(fault(status));
-            }
+            holds(self)?;
             if !self.pass(&mut left)? {
                 return Err(HostError::Trace(
-                    "the trace does not end: does the stage get its tick?".to_owned(),
+                    "the trace does not end: does the hardware get its tick?".to_owned(),
                 ));
             }
         }

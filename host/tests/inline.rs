@@ -9,7 +9,7 @@ use posicast_blocks::component::Component;
 use posicast_blocks::linked_stage::address_limit;
 use posicast_closed_loop::inline_bench::InlineBench;
 use posicast_closed_loop::linked_bench::{LinkedBench, Registered};
-use posicast_host::{HostError, HostedInline, Link, LinkOptions};
+use posicast_host::{HostError, HostedInline, Link, LinkOptions, Shake, TraceRequest};
 use posicast_machine::hardware::Hardware;
 use posicast_machine::machine_file::{self, Machine};
 use posicast_machine::plan::design_machine;
@@ -94,6 +94,56 @@ fn the_shaping_ends_on_request_and_begins_again_unless_the_pin_holds_it() {
         "{refused}"
     );
     assert!(refused.to_string().contains("set the pin `bypass` low"), "{refused}");
+}
+
+/// The example with a trace memory on axis x.
+fn traced() -> Machine {
+    let text = include_str!("../../examples/inline.toml");
+    let (first, rest) = text.split_once("[[axis]]").unwrap();
+    let (x, others) = rest.split_once("[[axis]]").unwrap();
+    let text = format!("{first}[[axis]]{x}[axis.trace]\nsamples = 1024\n[[axis]]{others}[link]\nbaud = 3_000_000\n");
+    machine_file::parse("inline.toml", &text).unwrap()
+}
+
+#[test]
+fn a_trace_shows_the_position_before_and_after_the_shaper_tick_by_tick() {
+    let machine = traced();
+    let component = component(&machine);
+    let mut line = open(&machine, &component).into_link().into_line();
+    line.bench.steps("x", 40).unwrap();
+    let mut host = HostedInline::open(Link::new(line, OPTIONS), &machine, &component).unwrap();
+    let request = TraceRequest {
+        axis: 0,
+        signals: ["input_position", "output_position"].map(str::to_owned).to_vec(),
+        every_ticks: 1,
+        shake: None,
+    };
+    let trace = host.trace(&request).unwrap();
+    assert_eq!((trace.rows(), trace.signals[0].unit.as_str()), (512, "steps"));
+    let rows: Vec<[f64; 2]> = trace.values().map(|row| [row[0], row[1]]).collect();
+    let last = rows[511];
+    assert_eq!(last, [40.0, 40.0]);
+    let table = &design_machine(&machine).unwrap().axes[0].table;
+    // The output is the input through the taps, from the row on that knows all of its past.
+    let longest = table.longest_delay_samples() as usize;
+    let one = f64::from(1_u32 << table.coefficient_fraction());
+    for at in longest + 1..rows.len() {
+        let delayed = |tap: &Tap| f64::from(tap.coefficient) / one * rows[at - tap.delay_samples as usize][0];
+        let expected: f64 = table.taps().iter().map(delayed).sum();
+        let off = (rows[at][1] - expected).abs();
+        assert!(off <= 2.0 / 256.0, "row {at}: {:?} instead of {expected}", rows[at]);
+    }
+    assert!(rows.iter().any(|[input, output]| input != output));
+
+    let shaken = TraceRequest {
+        shake: Some(Shake {
+            amplitude_counts: 3.0,
+            bit_ticks: 10,
+        }),
+        ..request
+    };
+    let refused = host.trace(&shaken).unwrap_err();
+    assert!(refused.to_string().contains("no test signal"), "{refused}");
 }
 
 #[test]

@@ -1,5 +1,6 @@
-//! The actions of `posicast host` on a stage.
+//! The actions of `posicast host` on a stage, and those that an inline shaper has, too.
 
+use super::inline::InlinePort;
 use super::{Port, TraceArgs, axis_of, failure};
 use crate::output;
 use posicast_flow::Failure;
@@ -128,14 +129,8 @@ pub(super) fn trace<'m>(
     open: impl FnOnce() -> Result<Port<'m>, Failure>,
 ) -> Result<(), Failure> {
     let path = args.line.machine.as_path();
-    let axis = axis_of(machine, &args.axis, path)?;
+    let axis = traced(machine, args)?;
     let section = &machine.axes[axis];
-    if section.trace.is_none() {
-        return Err(
-            Failure::input(format!("{}: axis {} has no trace memory", path.display(), args.axis))
-                .with_help("add [axis.trace] to the axis, and generate and build the stage anew"),
-        );
-    }
     let on_scale = section.scale.is_some();
     let names: &[&str] = match (args.shake, on_scale) {
         (None, _) => &["command_position", "shaped_position", "captured_position", "error"],
@@ -167,6 +162,48 @@ pub(super) fn trace<'m>(
             trace
         }
     };
+    write(args, &trace)
+}
+
+/// The axis of a trace, if it has a memory.
+fn traced(machine: &Machine, args: &TraceArgs) -> Result<usize, Failure> {
+    let path = args.line.machine.as_path();
+    let axis = axis_of(machine, &args.axis, path)?;
+    if machine.axes[axis].trace.is_none() {
+        return Err(
+            Failure::input(format!("{}: axis {} has no trace memory", path.display(), args.axis))
+                .with_help("add [axis.trace] to the axis, and generate and build the hardware anew"),
+        );
+    }
+    Ok(axis)
+}
+
+/// Records positions of an axis of an inline shaper.
+pub(super) fn trace_inline<'m>(
+    machine: &'m Machine,
+    args: &TraceArgs,
+    open: impl FnOnce() -> Result<InlinePort<'m>, Failure>,
+) -> Result<(), Failure> {
+    let path = args.line.machine.as_path();
+    let axis = traced(machine, args)?;
+    if args.shake.is_some() {
+        return Err(Failure::input(format!(
+            "{}: --shake: an inline shaper makes no test signal",
+            path.display()
+        ))
+        .with_help("leave out --shake, and let the controller move the axis while it is recorded"));
+    }
+    let names = ["input_position", "output_position"];
+    let request = TraceRequest {
+        axis,
+        signals: match args.signals.as_slice() {
+            [] => names.map(str::to_owned).to_vec(),
+            signals => signals.to_vec(),
+        },
+        every_ticks: args.every.unwrap_or(1),
+        shake: None,
+    };
+    let trace = open()?.trace(&request).map_err(failure)?;
     write(args, &trace)
 }
 

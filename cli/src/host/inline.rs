@@ -11,7 +11,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 /// An inline shaper behind a port.
-type InlinePort<'m> = HostedInline<'m, Box<dyn AnyLine>>;
+pub(super) type InlinePort<'m> = HostedInline<'m, Box<dyn AnyLine>>;
 
 /// `host status --json` of an inline shaper: counts in steps, modulo 2^32, all of one clock.
 #[derive(Serialize, JsonSchema)]
@@ -75,7 +75,7 @@ pub(super) fn run<'m>(
         }
         Action::Move { line, .. } => Err(lacks("move", "its controller moves the axes", line)),
         Action::Home { line, .. } => Err(lacks("home", "its controller homes the axes", line)),
-        Action::Trace(trace) => Err(lacks("trace", "it has no trace memory", &trace.line)),
+        Action::Trace(trace) => actions::trace_inline(machine, trace, open),
     }
 }
 
@@ -84,7 +84,7 @@ fn lacks(action: &str, why: &str, line: &super::Line) -> Failure {
         "{}: an inline shaper has no `{action}`: {why}",
         line.machine.display()
     ))
-    .with_help("use status, bypass, load or table")
+    .with_help("use status, bypass, trace, load or table")
 }
 
 fn document(machine: &Machine, status: &InlineStatus) -> Document {

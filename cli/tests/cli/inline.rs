@@ -255,7 +255,7 @@ fn cli_inline_host_shows_counts_switches_the_shaping_and_loads() {
             vec!["move", "x=1"],
             "an inline shaper has no `move`: its controller moves the axes",
         ),
-        (vec!["trace", "x", "-o", "x.csv"], "an inline shaper has no `trace`"),
+        (vec!["trace", "x", "-o", "x.csv"], "axis x has no trace memory"),
         (vec!["table", "w"], "no axis `w`"),
     ] {
         let (code, said, error) = run(&words);
@@ -269,6 +269,47 @@ fn cli_inline_host_shows_counts_switches_the_shaping_and_loads() {
     assert!(
         error.contains("was made from a machine file with the checksum"),
         "{error}"
+    );
+}
+
+#[test]
+fn cli_inline_host_records_positions() {
+    let trace = "[axis.trace]\nsamples = 256\n\n[[axis]]\nname = \"y\"";
+    let text = linked().replacen("[[axis]]\nname = \"y\"", trace, 1);
+    assert!(text.contains("[axis.trace]"));
+    let (folder, file) = scratch(&text);
+    let served = served(&text, 120);
+    let csv = folder.path().join("x.csv");
+    let run = |words: &[&str]| {
+        host(
+            &served.port,
+            &file,
+            &[&["trace", "x", "-o", csv.to_str().unwrap()], words].concat(),
+        )
+    };
+    let (code, _, error) = run(&["--shake", "3"]);
+    assert!(code == Some(2) && error.contains("makes no test signal"), "{error}");
+    assert!(!csv.exists());
+    let (code, said, error) = run(&["--every", "3"]);
+    assert_eq!(code, Some(0), "{error}");
+    assert!(
+        said.contains("128 rows of input_position, output_position, 0.0003 s apart"),
+        "{said}"
+    );
+    let rows = std::fs::read_to_string(csv).unwrap();
+    assert!(
+        rows.starts_with("time_s,input_position,output_position\n") && rows.contains("\n0.000000000,120,120\n"),
+        "{rows}"
+    );
+
+    // Without a line nobody could read it.
+    refused(
+        "[[axis]]\nname = \"y\"",
+        trace,
+        &[
+            "axis x with [axis.input] and [axis.trace], without [link]",
+            "add [link]",
+        ],
     );
 }
 

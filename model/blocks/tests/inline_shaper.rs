@@ -40,6 +40,7 @@ fn axis(modes: [StepMode; 2], taps: &[(u32, i32)], low: InlineLinesActiveLow) ->
         follower: InlineAxisConfig::new(10, settle).unwrap().active_low(low),
         shaper: shaper.for_motion(INLINE_MOTION).unwrap(),
         steps: StepGeneratorConfig::new(TICK_CLOCKS, INLINE_FRACTION, modes[1], times, 100).unwrap(),
+        trace: None,
     }
 }
 

@@ -170,6 +170,7 @@ pub(crate) fn example() -> Result<InlineShaper, Error> {
             follower: InlineAxisConfig::new(10, settle).map_err(refused)?,
             shaper: shaper.for_motion(INLINE_MOTION).map_err(refused)?,
             steps,
+            trace: None,
         })
     };
     let mut y = axis(
@@ -207,6 +208,7 @@ pub(crate) fn unlimited() -> Result<InlineShaper, Error> {
             follower: InlineAxisConfig::new(u64::from(MOST_TICK_STEPS), 6).map_err(refused)?,
             shaper: shaper.for_motion(INLINE_MOTION).map_err(refused)?,
             steps: steps.map_err(refused)?,
+            trace: None,
         }],
     })
     .map_err(refused)

@@ -1,5 +1,5 @@
 //! A host of an inline shaper, and the controller at its pins: the pins are those of the inline shaper's own bench; the host loads
-//! tables, asks for no shaping, takes snapshots and clears flags.
+//! tables, asks for no shaping, records traces, takes snapshots and clears flags.
 
 use std::collections::VecDeque;
 
@@ -9,6 +9,7 @@ use posicast_blocks::linked_stage::BridgeConfig;
 use posicast_blocks::registers::{Field, RegisterMap, WINDOW_WORDS};
 use posicast_blocks::spi_bridge::SpiBridgeConfig;
 use posicast_blocks::step_generator::StepMode;
+use posicast_blocks::trace::TraceConfig;
 use posicast_blocks::uart_bridge::UartBridgeConfig;
 use posicast_taps::{Tap, TapTable};
 use rand::{Rng, RngExt, SeedableRng};
@@ -95,7 +96,9 @@ fn linked(shaper: &InlineShaper, with_spi: bool) -> Result<LinkedStageBlock, Err
         BridgeConfig::Uart(UartBridgeConfig::new(clock_hz, baud, silence_s, words).map_err(refused)?)
     };
     let names = ["inline_link", "inline_top", "inline"];
-    LinkedStageBlock::of_inline((shaper.config(), Some(0x1234_5678)), (line, clock_hz as f64), names).map_err(refused)
+    let mut config = shaper.config().clone();
+    config.axes[0].trace = Some(TraceConfig::new(256).map_err(refused)?);
+    LinkedStageBlock::of_inline((&config, Some(0x1234_5678)), (line, clock_hz as f64), names).map_err(refused)
 }
 
 /// The pins, and the host.
@@ -174,6 +177,25 @@ impl InlineBeside {
         self.push(axis, &of("swap"), swap);
     }
 
+    /// A trace of some rows, in any mode of its trigger; or the word that is read next.
+    fn trace(&mut self, axis: usize) {
+        let of = |register: &str, name: &str| format!("{name}_{register}");
+        let name = self.axes[axis].0.clone();
+        if self.below(2) == 0 {
+            let address = self.below(256);
+            self.push(axis, &of("trace_address", &name), address);
+            return;
+        }
+        let setup = self.rng.next_u32();
+        let rate = self.below(3) | self.below(300) << 16;
+        let level = self.below(1 << 14).wrapping_sub(1 << 13);
+        self.push(axis, &of("trace_halt", &name), 0);
+        self.push(axis, &of("trace_setup", &name), setup);
+        self.push(axis, &of("trace_rate", &name), rate);
+        self.push(axis, &of("trace_level", &name), level);
+        self.push(axis, &of("trace_arm", &name), 0);
+    }
+
     /// The next sequence of writes, or none for a while.
     fn think(&mut self) {
         let axis = self.below(self.axes.len() as u32) as usize;
@@ -201,6 +223,7 @@ impl InlineBeside {
                 let word = self.placed(&swap, &format!("{}_swap_how", self.axes[axis].0), how);
                 self.push(axis, &swap, word);
             }
+            7 => self.trace(axis),
             _ => {}
         }
     }

@@ -26,10 +26,11 @@ use crate::group::MOST_AXES;
 use crate::inline_axis::{INLINE_FRACTION, InlineAxisConfig, LATENCY_CLOCKS};
 use crate::inline_group::InlineGroupConfig;
 use crate::pulse_counter::FILTER_CLOCKS_MAX;
-use crate::registers::{MapError, RegisterMap};
+use crate::registers::{MapError, RegisterMap, trace};
 use crate::schedule::{ScheduleConfig, ScheduleConfigError};
 use crate::shaper::{ShaperConfig, ShaperMotion};
 use crate::step_generator::{self, StepGeneratorConfig, StepMode};
+use crate::trace::TraceConfig;
 
 /// The shaper that an axis needs: only the position, which wraps.
 pub const INLINE_MOTION: ShaperMotion = ShaperMotion {
@@ -42,6 +43,8 @@ pub const INLINE_SHAPER: &str = "inline_shaper";
 
 /// Clocks from a pin to the count, in addition to the filter: a flip-flop, and the pulse counter's.
 const INPUT_CLOCKS: u32 = 1 + 4;
+/// Clocks from a strobe for which the signals of a trace must stand.
+const TRACE_CLOCKS: u32 = 16;
 /// Pins that all axes share, after `rst`.
 const SHARED_INPUTS: [&str; 5] = ["rst", "enable", "emergency_stop_n", "bypass", "clear_faults"];
 const SHARED_OUTPUTS: [&str; 4] = ["drive_enable", "settled", "bypassed", "fault"];
@@ -74,6 +77,8 @@ pub struct InlineShaperAxis {
     pub shaper: ShaperConfig,
     /// The lines to the drive.
     pub steps: StepGeneratorConfig,
+    /// A memory that records its positions; only registers reach it, and without them it is not built.
+    pub trace: Option<TraceConfig>,
 }
 
 /// Why an inline shaper cannot be built.
@@ -183,7 +188,8 @@ impl InlineConfig {
                 });
             }
         }
-        let needed = self.control_clocks();
+        let traced = self.axes.iter().any(|axis| axis.trace.is_some());
+        let needed = self.control_clocks() + if traced { TRACE_CLOCKS } else { 0 };
         if needed < tick_clocks {
             Ok(())
         } else {
@@ -366,13 +372,16 @@ fn join(axis: &InlineShaperAxis, registers: Registers) -> Result<JoinedBlocks, C
             (counts, driven, read)
         }
     };
-    let blocks = [
+    let mut blocks = vec![
         ComponentPart::InlineAxis(axis.follower),
         ComponentPart::PulseCounter,
         ComponentPart::Shaper(Box::new(axis.shaper.clone())),
         ComponentPart::StepGenerator(axis.steps),
     ];
-    let blocks = blocks.map(|block| (block.name().to_owned(), block));
+    if let (Some(trace), Registers::With) = (axis.trace, registers) {
+        blocks.push(ComponentPart::Trace(trace));
+    }
+    let blocks = blocks.into_iter().map(|block| (block.name().to_owned(), block));
     let [pin_a, pin_b] = input_pins(axis);
     let [line_a, line_b] = axis.steps.mode().line_names();
     let owned = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
@@ -402,12 +411,16 @@ fn join(axis: &InlineShaperAxis, registers: Registers) -> Result<JoinedBlocks, C
                 .on("b", line_b)
                 .on("count", counts.given)
                 .on("owed", counts.owed),
+            // The positions have changed at the tick: they stand while a row is taken.
+            ComponentPart::Trace(_) => trace::connect(part, registers::TRACED_NETS.map(Some))
+                .on("strobe", "control")
+                .on("trigger_event", "follow"),
             _ => part,
         }),
         inputs: [owned(&SHARED_NETS), vec![pin_a.clone(), pin_b.clone()], driven].concat(),
         outputs: outputs.chain(read).collect(),
     };
-    JoinedBlocks::new(&axis.name, blocks.to_vec(), wiring)
+    JoinedBlocks::new(&axis.name, blocks.collect(), wiring)
 }
 
 /// The pulse counter only counts: whatever measures a velocity is tied, and left out in synthesis.

@@ -5,6 +5,7 @@
 
 use super::{InlineConfig, InlineShaperAxis};
 use crate::registers::maps::partial_write;
+use crate::registers::trace::Traced;
 use crate::registers::{Access, Description, Field, Register, WINDOW_WORDS, tables};
 use crate::stage::{axis_register, driven_and_read};
 
@@ -14,6 +15,15 @@ pub(super) const INPUT_STEPS: &str = "input_steps";
 pub(super) const GIVEN_STEPS: &str = "given_steps";
 /// Net of the steps that it still owes.
 pub(super) const OWED_STEPS: &str = "owed_steps";
+
+/// Signals that can be recorded, with the meaning of their words.
+const TRACED: [(&str, &str); 3] = [
+    ("input_position", "position of the input at the tick, Q24.8 steps"),
+    ("shaped_position", "position after the shaper, Q24.8 steps"),
+    ("output_position", "position for the drive, shaped or not, Q24.8 steps"),
+];
+/// Their nets.
+pub(super) const TRACED_NETS: [&str; 3] = ["x", "shaped", "position"];
 
 /// All registers.
 pub(super) fn description(config: &InlineConfig, machine_crc: Option<u32>) -> Description {
@@ -93,7 +103,24 @@ pub(super) fn hardware(axis: &InlineShaperAxis) -> (Vec<String>, Vec<String>) {
 
 /// The registers of an axis, in words of its window, without the axis's name as prefix.
 fn window_of(axis: &InlineShaperAxis) -> Vec<Register> {
-    [parameters(axis), loaded_tables(axis), states(), counts()].concat()
+    let trace = if axis.trace.is_some() { trace() } else { Vec::new() };
+    [parameters(axis), loaded_tables(axis), states(), counts(), trace].concat()
+}
+
+fn trace() -> Vec<Register> {
+    let traced = Traced {
+        signals: &TRACED,
+        event: ("follow", "the steps follow the input"),
+    };
+    let mut registers = traced.registers();
+    registers.push(Register::new(
+        "trace_events",
+        0x50,
+        Access::Sticky,
+        "events since the flag was cleared",
+        vec![Field::flag("trace_done", 0, "the trace is full")],
+    ));
+    registers
 }
 
 fn parameters(axis: &InlineShaperAxis) -> Vec<Register> {

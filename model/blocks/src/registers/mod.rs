@@ -39,6 +39,7 @@ mod map;
 pub mod maps;
 mod markdown;
 pub(crate) mod tables;
+pub(crate) mod trace;
 
 pub use bank::RegisterBank;
 pub use description::{

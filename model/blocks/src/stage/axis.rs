@@ -9,7 +9,7 @@ use crate::component::{ComponentPart, JoinedBlocks, Wiring};
 use crate::composition::{CompositionError, Part};
 use crate::error_table::EntryUnit;
 use crate::pwm::PwmConfig;
-use crate::trace::SIGNALS;
+use crate::registers::trace;
 
 /// Input pins of an axis with a controller.
 const INPUT_PINS: [&str; 9] = [
@@ -222,29 +222,6 @@ const EXCITATION: Nets = &[
     ("acceleration_reference", "delayed_acceleration"),
 ];
 
-const TRACE: Nets = &[
-    ("select_0", "trace_select_0"),
-    ("select_1", "trace_select_1"),
-    ("select_2", "trace_select_2"),
-    ("select_3", "trace_select_3"),
-    ("signals", "trace_signals"),
-    ("decimation", "trace_decimation"),
-    ("trigger_select", "trace_trigger_select"),
-    ("trigger_mode", "trace_trigger_mode"),
-    ("trigger_level", "trace_trigger_level"),
-    ("trigger_event", "started"),
-    ("pre_trigger", "trace_pre_trigger"),
-    ("arm", "trace_arm"),
-    ("halt", "trace_halt"),
-    ("read_address", "trace_address"),
-    ("data", "trace_data"),
-    ("state", "trace_state"),
-    ("rows", "trace_rows"),
-    ("trigger_row", "trace_trigger_row"),
-    ("missed", "trace_missed"),
-    ("done", "trace_done"),
-];
-
 const AXIS: Nets = &[
     ("start", "axis_start"),
     ("reference_position", "shaped_position"),
@@ -436,7 +413,7 @@ fn wire(axis: &StageAxis, tick_clocks: u32, block: &ComponentPart, part: Part) -
         ComponentPart::Excitation => on(part, EXCITATION)
             .tied("amplitude_limit", watched.excitation_limit.into())
             .tied("modulo", axis.modulo.into()),
-        ComponentPart::Trace(_) => trace(axis, on(part, TRACE)),
+        ComponentPart::Trace(_) => trace(axis, part),
         _ => part,
     }
 }
@@ -554,18 +531,18 @@ fn supervisor(axis: &StageAxis, part: Part) -> Part {
 
 /// Connections of the trace memory. A signal of a block that is not built is recorded as 0.
 fn trace(axis: &StageAxis, part: Part) -> Part {
-    let signals = TRACED.iter().enumerate();
-    let part = signals.fold(part, |part, (place, (net, _))| {
-        let port = format!("signal_{place}");
-        match *net {
-            "deviation" if axis.scale.is_none() => part.tied(&port, 0),
-            net if axis.steps().is_some() && steps::LACKS_SIGNALS.contains(&net) => part.tied(&port, 0),
-            net => part.on(&port, net),
-        }
-    });
-    let part = match axis.follower {
-        Follower::Loop(_) => part.on("strobe", "controller_valid"),
-        Follower::Steps(_) => part.on("strobe", "control"),
+    let strobe = match axis.follower {
+        Follower::Loop(_) => "controller_valid",
+        Follower::Steps(_) => "control",
     };
-    (TRACED.len()..SIGNALS).fold(part, |part, place| part.tied(&format!("signal_{place}"), 0))
+    let nets = TRACED.map(|(net, _)| {
+        let lacks = match net {
+            "deviation" => axis.scale.is_none(),
+            net => axis.steps().is_some() && steps::LACKS_SIGNALS.contains(&net),
+        };
+        (!lacks).then_some(net)
+    });
+    trace::connect(part, nets)
+        .on("strobe", strobe)
+        .on("trigger_event", "started")
 }

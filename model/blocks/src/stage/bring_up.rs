@@ -1,6 +1,7 @@
 //! Registers for bringing an axis up: trace memory, test signals, and encoder edges without a machine.
 
 use super::registers::with_the_drive_off;
+use crate::registers::trace::Traced;
 use crate::registers::{Access, Field, Register};
 
 /// Signals that can be recorded: net, and meaning of its words.
@@ -26,114 +27,28 @@ pub(super) const TRACED: [(&str, &str); 13] = [
     ("deviation", "deviation of the motor from the scale, counts"),
 ];
 
-/// A field that selects a signal of the trace, with the list of signals.
-fn signal(name: &str, low: u32, meaning: &str) -> Field {
-    let signals = (0..).zip(TRACED).map(|(value, (net, words))| (value, net, words));
-    Field::choice(name, low, 4, meaning, &signals.collect::<Vec<_>>())
-}
-
 /// The registers, in words of the axis's window.
 pub(super) fn registers() -> Vec<Register> {
     [trace(), excitation(), generator()].concat()
 }
 
 fn trace() -> Vec<Register> {
-    let selects = [0, 1, 2, 3].map(|place| {
-        let name = format!("trace_select_{place}");
-        signal(&name, 4 * place, "signal that is recorded")
-    });
-    let counts = [
-        (0, "one", "signal per row"),
-        (1, "two", "signals"),
-        (2, "four", "signals"),
-    ];
-    let modes = [
-        (0, "at_once", "with `TRACE_ARM`"),
-        (1, "rising", "through `TRACE_LEVEL`"),
-        (2, "falling", "through `TRACE_LEVEL`"),
-        (3, "start", "start of a move"),
-    ];
-    let more = vec![
-        Field::choice("trace_signals", 16, 2, "signals per row", &counts).with_reset(2),
-        signal("trace_trigger_select", 20, "signal that is compared with the level"),
-        Field::choice("trace_trigger_mode", 24, 2, "event that triggers the trace", &modes),
-    ];
-    vec![
-        Register::new(
-            "trace_setup",
-            0x48,
-            Access::Configuration,
-            "signals and trigger of the trace; must not change during a trace",
-            [selects.to_vec(), more].concat(),
-        ),
-        Register::new(
-            "trace_rate",
-            0x49,
-            Access::Configuration,
-            "interval of the rows, and rows before the trigger",
-            vec![
-                Field::new("trace_decimation", 0, 16, "time skipped between rows").with_unit("ticks"),
-                Field::new("trace_pre_trigger", 16, 11, "rows before the trigger"),
-            ],
-        ),
-        Register::new(
-            "trace_level",
-            0x4a,
-            Access::Configuration,
-            "level of the trigger",
-            vec![Field::new("trace_trigger_level", 0, 32, "in the unit of the signal").signed()],
-        ),
-        Register::new(
-            "trace_arm",
-            0x4b,
-            Access::command("trace_arm"),
-            "discards the trace and begins a new one",
-            vec![],
-        ),
-        Register::new(
-            "trace_halt",
-            0x4c,
-            Access::command("trace_halt"),
-            "ends the trace now",
-            vec![],
-        ),
-        Register::new(
-            "trace_address",
-            0x4d,
-            Access::Configuration,
-            "index of the word in `TRACE_DATA`; the oldest is 0",
-            vec![Field::new("trace_address", 0, 11, "row times signals, plus signal")],
-        ),
-        Register::new(
-            "trace_data",
-            0x4e,
-            Access::Live,
-            "a word of the trace, while it is idle",
-            vec![Field::new("trace_data", 0, 32, "value of the signal")],
-        ),
-        Register::new(
-            "trace_status",
-            0x4f,
-            Access::Live,
-            "progress of the trace",
-            vec![
-                Field::new("trace_state", 0, 2, "0 idle, 1 filling, 2 waiting, 3 taking"),
-                Field::flag("trace_missed", 2, "a tick came too early"),
-                Field::new("trace_rows", 4, 12, "rows that can be read"),
-                Field::new("trace_trigger_row", 16, 11, "row of the trigger"),
-            ],
-        ),
-        Register::new(
-            "bring_up_events",
-            0x50,
-            Access::Sticky,
-            "events since the flag was cleared",
-            vec![
-                Field::flag("trace_done", 0, "the trace is full"),
-                Field::flag("excitation_done", 1, "the test signal has ended"),
-            ],
-        ),
-    ]
+    let traced = Traced {
+        signals: &TRACED,
+        event: ("start", "start of a move"),
+    };
+    let mut registers = traced.registers();
+    registers.push(Register::new(
+        "bring_up_events",
+        0x50,
+        Access::Sticky,
+        "events since the flag was cleared",
+        vec![
+            Field::flag("trace_done", 0, "the trace is full"),
+            Field::flag("excitation_done", 1, "the test signal has ended"),
+        ],
+    ));
+    registers
 }
 
 fn excitation() -> Vec<Register> {

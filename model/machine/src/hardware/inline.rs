@@ -1,6 +1,7 @@
 //! The inline shaper of a machine whose commands come as step pulses.
 
 use super::axis::of_axis;
+use super::stage::trace;
 use super::{HardwareError, NAME_KEY, SAMPLE_KEY};
 use crate::machine_file::{AxisSection, BeyondLimits, ClockSection, InputSection, Machine, StepsSection};
 use crate::plan::MachineDesign;
@@ -79,6 +80,7 @@ pub(super) fn inline(machine: &Machine, design: &MachineDesign) -> Result<Option
             follower,
             steps: lines(index, axis, (input, steps), &tables.table, clock)?,
             shaper,
+            trace: trace(axis).map_err(|error| HardwareError::new(index, "axis.trace.samples", error))?,
         });
     }
     let config = InlineConfig { tick, axes };

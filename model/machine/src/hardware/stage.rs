@@ -281,7 +281,8 @@ fn scale(axis: &AxisSection) -> Result<Option<StageScale>, ScaleRatioError> {
     }))
 }
 
-fn trace(axis: &AxisSection) -> Result<Option<TraceConfig>, TraceConfigError> {
+/// The memory of `[axis.trace]`.
+pub(super) fn trace(axis: &AxisSection) -> Result<Option<TraceConfig>, TraceConfigError> {
     let samples = axis.trace.map(|trace| u64::from(trace.samples));
     samples.map(TraceConfig::new).transpose()
 }

@@ -97,7 +97,8 @@ pub(super) const KEYS: &[Key] = &[
         "trace",
         Values::Table(trace::KEYS),
         "Memory that records signals of the loop.",
-    ),
+    )
+    .rule("with `[axis.input]` needs `[link]`"),
     Key::new(
         "error_table",
         Values::Table(error_table::KEYS),
@@ -330,7 +331,7 @@ pub(super) const NEEDS: [Need; 10] = [
 ];
 
 /// The tables that an inline shaper has no block for.
-const NOT_WITH_INPUT: [&str; 6] = ["correction", "probe", "scale", "error_table", "trace", "family"];
+const NOT_WITH_INPUT: [&str; 5] = ["correction", "probe", "scale", "error_table", "family"];
 
 /// The blocks that `[axis.steps]` replaces.
 pub(super) const REPLACED_BY_STEPS: [&str; 4] = ["encoder", "pwm", "drive", "controller"];

@@ -148,7 +148,7 @@ pub(super) fn read(root: &Table<'_, '_>) -> Option<Machine> {
     })
 }
 
-/// Checks that every axis has an input, or none.
+/// Checks that every axis has an input, or none, and that a host can read what an axis with an input records.
 fn check_inputs(root: &Table<'_, '_>, axes: &[AxisSection]) {
     let with = axes.iter().find(|axis| axis.input.is_some());
     let without = axes.iter().find(|axis| axis.input.is_none());
@@ -158,6 +158,15 @@ fn check_inputs(root: &Table<'_, '_>, axes: &[AxisSection]) {
             format!("axis {} with [axis.input] and axis {} without", with.name, without.name),
             "[axis.input] on every axis, whose commands come as step pulses, or on none",
             format!("add [axis.input] to axis {}, or make two machine files", without.name),
+        );
+    }
+    let traced = with.filter(|_| root.lacks("link"));
+    if let Some(axis) = traced.and_then(|_| axes.iter().find(|axis| axis.trace.is_some())) {
+        root.contradiction(
+            "axis",
+            format!("axis {} with [axis.input] and [axis.trace], without [link]", axis.name),
+            "a trace of an inline shaper with [link], through which a host reads it",
+            "add [link], or remove [axis.trace]",
         );
     }
 }
