@@ -36,10 +36,14 @@
 //! | [`uart_bridge`] | the bridge from a serial line to the registers |
 //! | [`spi_bridge`] | the bridge from SPI to the registers |
 //! | [`linked_stage`] | the stage with one of these bridges |
+//! | [`axi_lite_bridge`], [`wishbone_bridge`] | the bridges from other buses to the registers |
+//! | [`bus_component`] | a component with one of these bridges |
 //! | [`machine`] | a machine's top module: the shapers of its axes, side by side |
 //! | [`emit`](mod@emit) | the typed emitter: RustHDL's syntax tree as Verilog |
 
+pub mod axi_lite_bridge;
 pub mod axis;
+pub mod bus_component;
 pub mod cascade;
 mod compiled;
 pub mod component;
@@ -79,5 +83,6 @@ pub mod step_generator;
 pub mod time_base;
 pub mod trace;
 pub mod uart_bridge;
+pub mod wishbone_bridge;
 
 pub use simulation::SimulationError;

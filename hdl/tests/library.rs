@@ -16,9 +16,10 @@ use posicast_blocks::step_generator::{StepGeneratorConfig, StepLinesActiveLow, S
 use posicast_blocks::trace::TraceConfig;
 use posicast_hdl::emit::{LIBRARY, Module};
 use posicast_hdl::{
-    axis, cascade, component, divider, divider_share, drive_command, encoder_generator, excitation, group, inline_axis,
-    inline_group, lasting_deviation, linear_scale, probe_line, pulse_counter, pwm, realign, registers, sample_select,
-    schedule, segments, setting_banks, shaper, sliding_mode, spi_bridge, step_generator, time_base, trace, uart_bridge,
+    axi_lite_bridge, axis, cascade, component, divider, divider_share, drive_command, encoder_generator, excitation,
+    group, inline_axis, inline_group, lasting_deviation, linear_scale, probe_line, pulse_counter, pwm, realign,
+    registers, sample_select, schedule, segments, setting_banks, shaper, sliding_mode, spi_bridge, step_generator,
+    time_base, trace, uart_bridge, wishbone_bridge,
 };
 use posicast_taps::{Tap, TapTable};
 use std::collections::BTreeMap;
@@ -169,6 +170,8 @@ fn machine(prefix: &str, chance: &mut Chance) -> Vec<Vec<Module>> {
         excitation::emit(prefix),
         uart_bridge::emit(prefix),
         spi_bridge::emit(prefix),
+        axi_lite_bridge::emit(prefix),
+        wishbone_bridge::emit(prefix),
     ];
     let components = [
         Component::shaper(shaper).unwrap(),

@@ -24,8 +24,10 @@
 //! - [`wording`] writes counts and times for people.
 
 pub mod asynchronous;
+pub mod axi_lite_bridge;
 pub mod axis;
 pub mod blocks;
+pub mod bus_component;
 pub mod campaign;
 pub mod cascade;
 pub mod component;
@@ -65,6 +67,7 @@ pub mod trace;
 pub mod uart_bridge;
 pub mod verilator;
 pub mod wave;
+pub mod wishbone_bridge;
 pub mod yosys;
 
 use blocks::registry::RegistryRow;
@@ -90,6 +93,8 @@ pub(crate) const REGISTRY: &[RegistryRow] = &[
     excitation::ROW,
     uart_bridge::ROW,
     spi_bridge::ROW,
+    axi_lite_bridge::ROW,
+    wishbone_bridge::ROW,
     step_generator::ROW,
     inline_axis::ROW,
     parts::TIME_BASE,
@@ -107,4 +112,5 @@ pub(crate) const REGISTRY: &[RegistryRow] = &[
     stage::ROW,
     inline_shaper::ROW,
     linked_stage::inline::ROW,
+    bus_component::ROW,
 ];

@@ -3,7 +3,9 @@
 //! A model, RustHDL's simulation and a Verilated module all have the same interface, [`ClockedBlock`], through which
 //! lock step compares them.
 
+pub mod axi_lite_bridge;
 pub mod axis;
+pub mod bus_component;
 pub mod cascade;
 pub mod component;
 pub mod composition;
@@ -42,6 +44,7 @@ pub mod step_generator;
 pub mod time_base;
 pub mod trace;
 pub mod uart_bridge;
+pub mod wishbone_bridge;
 pub mod word;
 
 pub(crate) use moore::quiet_at_rest;
@@ -51,6 +54,7 @@ pub(crate) use ports::{clocked_block, ports};
 
 /// The blocks with a datasheet, and their ports, which the table in `docs/NAME.md` shows.
 pub const PORT_LISTS: &[(&str, PortList)] = &[
+    ("axi_lite_bridge", axi_lite_bridge::PORTS),
     ("axis", axis::PORTS),
     ("divider", divider::PORTS),
     ("drive_command", drive_command::PORTS),
@@ -67,6 +71,7 @@ pub const PORT_LISTS: &[(&str, PortList)] = &[
     ("step_generator", step_generator::PORTS),
     ("trace", trace::PORTS),
     ("uart_bridge", uart_bridge::PORTS),
+    ("wishbone_bridge", wishbone_bridge::PORTS),
 ];
 
 /// As [`PORT_LISTS`], for lists with sizes.

@@ -59,6 +59,11 @@ impl ComponentBlock {
         }
     }
 
+    /// Prefix of the modules whose contents depend on the machine.
+    pub fn prefix(&self) -> &str {
+        &self.prefix
+    }
+
     /// Replaces the component and keeps the names.
     pub fn like(&self, component: Component) -> Self {
         Self {

@@ -10,6 +10,11 @@ pub trait Stimuli {
     fn fill(&mut self, seen: &[u64], inputs: &mut [u64]);
 }
 
+/// The first N of these values, with 0 for those that are missing: a row of ports as `from_raw` takes it.
+pub(crate) fn row<const N: usize>(values: &[u64]) -> [u64; N] {
+    std::array::from_fn(|place| values.get(place).copied().unwrap_or(0))
+}
+
 /// Any function is a stimulus.
 impl<F: FnMut(&[u64], &mut [u64])> Stimuli for F {
     fn fill(&mut self, seen: &[u64], inputs: &mut [u64]) {

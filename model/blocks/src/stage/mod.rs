@@ -50,6 +50,9 @@ fn shared_pins(config: &StageConfig) -> Vec<&'static str> {
     ["emergency_stop_n"].into_iter().chain(pll_locked).collect()
 }
 
+/// Name of the component.
+pub const STAGE: &str = "stage";
+
 impl Component {
     /// The stage.
     ///
@@ -77,7 +80,7 @@ impl Component {
             inputs: pins(config, &shared_pins(config), axis::input_pins),
             outputs: pins(config, &["tick"], axis::output_pins),
         };
-        Ok(Self::joined(map, "stage", blocks.collect(), wiring)?)
+        Ok(Self::joined(map, STAGE, blocks.collect(), wiring)?)
     }
 }
 

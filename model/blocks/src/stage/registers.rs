@@ -52,7 +52,7 @@ pub(super) fn stage(config: &StageConfig) -> Description {
     if let Some(crc) = config.machine_crc {
         parameters.push(parameter("machine_crc", 32, "CRC-32 of the machine file", crc));
     }
-    let mut description = Description::new("stage", about, *b"STGE", (2, 2), parameters)
+    let mut description = Description::new(super::STAGE, about, *b"STGE", (2, 2), parameters)
         .with_windows(config.axes.len() as u32 + 1)
         .with(
             "snapshot",
