@@ -10,10 +10,12 @@ use crate::kit;
 use crate::machine::{self, MachineFile};
 use crate::observer::Observer;
 use crate::text::json_text;
+use crate::vhdl;
 use crate::{sopc, verilog};
 use posicast_machine::machine_file::Machine;
 use posicast_synth::package::{Committed, Package};
 use posicast_synth::sopc::Board;
+use posicast_testbench::blocks::Block;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -81,6 +83,7 @@ pub(crate) fn add(
         observer,
     )?;
     driver::add(package, machine, &modules, built)?;
+    vhdl::add(package, (machine, path), &modules, built, observer)?;
     Ok(sources)
 }
 
@@ -93,6 +96,11 @@ pub struct Document {
     pub folder: String,
     /// The top modules: the shapers, then the stage, the stage with its line, and the inline shaper, where the machine has them.
     pub top: Vec<String>,
+    /// The top modules of what has registers, on the bus of `[target]`.
+    pub on_bus: Vec<String>,
+    /// Name of that bus, if it is not Avalon-MM.
+    #[serde(skip)]
+    pub bus: Option<&'static str>,
     /// Paths in the folder.
     pub files: Vec<String>,
     /// Name of the stage's line, if it has one.
@@ -115,6 +123,8 @@ impl Document {
                 .chain(built.link.as_ref().map(|_| format!("{name}{LINK_SUFFIX}")))
                 .chain(built.inline_top())
                 .collect(),
+            on_bus: built.buses.iter().map(Block::top).collect(),
+            bus: built.buses.first().map(|block| block.bus().title()),
             files: files.iter().map(relative).collect(),
             has_inline: built.inline_top().is_some(),
             line: built.link.as_ref().map(|link| link.config().line()),

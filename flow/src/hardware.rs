@@ -2,7 +2,7 @@
 
 use crate::design::DesignReport;
 use crate::failure::Failure;
-use crate::machine::{at_key, of_hardware};
+use crate::machine::{at_key, of_hardware, place};
 use crate::observer::Observer;
 use crate::warning::Warning;
 use posicast_blocks::component::Component;
@@ -14,6 +14,7 @@ use posicast_machine::hardware::{Hardware, HardwareError, InlineFigures, InlineH
 use posicast_machine::machine_file::{LinkLine, LinkSection, Machine};
 use posicast_synth::sopc::{InlineUnit, InlineUnitAxis};
 use posicast_testbench::blocks::Block;
+use posicast_testbench::bus_component::BusComponentBlock;
 use posicast_testbench::component::ComponentBlock;
 use posicast_testbench::inline_shaper::InlineShaperBlock;
 use posicast_testbench::linked_stage::LinkedStageBlock;
@@ -27,6 +28,9 @@ pub(crate) const STAGE_SUFFIX: &str = "_stage";
 pub(crate) const INLINE_SUFFIX: &str = "_inline";
 /// Suffix of the top module with a stage and its line to a host.
 pub(crate) const LINK_SUFFIX: &str = "_link";
+
+/// Key of the bus of the registers.
+const BUS_KEY: &str = "target.bus";
 
 /// The hardware of a machine.
 pub(crate) struct Built<'a> {
@@ -46,6 +50,9 @@ pub(crate) struct Built<'a> {
     pub(crate) inline_registers: Option<ComponentBlock>,
     /// The figures of its axes.
     inline_figures: Vec<InlineFigures>,
+    /// The components, the stage or the inline shaper on another bus than Avalon-MM, if the machine file asks for it. Their top
+    /// modules have the name of the bus in place of `avalon`, or behind that of the stage.
+    pub(crate) buses: Vec<BusComponentBlock>,
 }
 
 /// A stage: its settings from the machine file, and its hardware.
@@ -108,17 +115,21 @@ impl<'a> Built<'a> {
                 return Err(at_key(path, 0, link_key(link), reason));
             }
         };
+        let components: Vec<ComponentBlock> = components.collect();
+        let registers = components.iter().chain(inline_registers.as_ref());
+        let buses = on_bus(machine, registers, stage.as_ref(), path)?;
         let inline = inline.filter(|inline| inline.component.is_none());
         let inline = inline.map(|inline| InlineShaperBlock::new(inline.shaper.clone(), &inline_top, &machine.name));
         Ok(Self {
             machine,
             shapers,
-            components: components.collect(),
+            components,
             stage,
             link,
             inline,
             inline_registers,
             inline_figures,
+            buses,
         })
     }
 
@@ -145,7 +156,7 @@ impl<'a> Built<'a> {
     }
 
     /// The Verilog modules without duplicates: those of the machine's top, then those of its components, of its stage,
-    /// of its inline shaper, and of its line. `path` is the machine file.
+    /// of its inline shaper, of its line, and of its bus. `path` is the machine file.
     pub(crate) fn modules(&self, path: &Path) -> Result<Vec<Module>, Failure> {
         let mut modules = emit_machine(&self.machine.name, &self.shapers).map_err(Failure::because)?;
         for component in &self.components {
@@ -165,8 +176,39 @@ impl<'a> Built<'a> {
         if let Some(link) = &self.link {
             add(&mut modules, link.modules().map_err(Failure::because)?).map_err(Failure::because)?;
         }
+        for bus in &self.buses {
+            add(&mut modules, bus.modules().map_err(Failure::because)?).map_err(Failure::because)?;
+        }
         Ok(modules)
     }
+}
+
+/// What has registers, on the bus of the machine file.
+fn on_bus<'b>(
+    machine: &Machine,
+    components: impl Iterator<Item = &'b ComponentBlock>,
+    stage: Option<&Stage>,
+    path: &Path,
+) -> Result<Vec<BusComponentBlock>, Failure> {
+    let Some(bus) = machine.target.as_ref().and_then(|target| target.bus) else {
+        return Ok(Vec::new());
+    };
+    let block = |of: &ComponentBlock, axes: &[String]| {
+        let inner = of.top();
+        let top = inner.strip_suffix(COMPONENT_SUFFIX).unwrap_or(&inner);
+        let top = format!("{top}_{}", bus.suffix());
+        BusComponentBlock::new(of.component().clone(), bus, axes, [&top, &inner, of.prefix()])
+    };
+    let mut buses: Vec<BusComponentBlock> = components.map(|of| block(of, &[])).collect();
+    let axes: Vec<String> = machine.axes.iter().map(|axis| axis.name.clone()).collect();
+    buses.extend(stage.map(|stage| block(&stage.block, &axes)));
+    if buses.is_empty() {
+        let reason = format!("nothing in this machine has registers that {} could reach", bus.title());
+        return Err(Failure::input(place(path, 0, BUS_KEY, reason)).with_help(
+            "give the axes an encoder, a PWM, a controller or steps, or an inline shaper a table [link]; or remove `bus`",
+        ));
+    }
+    Ok(buses)
 }
 
 /// The key of the line's speed.

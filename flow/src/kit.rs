@@ -10,6 +10,7 @@ use posicast_machine::machine_file::Machine;
 use posicast_synth::datasheets::{self, BuiltBlocks};
 use posicast_synth::kit::{self, Kit, KitShaper};
 use posicast_synth::package::Package;
+use posicast_testbench::bus_component::BusComponentBlock;
 
 /// The files, as path in the folder and text.
 pub(crate) fn files(machine: &Machine, modules: &[Module], built: &Built<'_>) -> Vec<(String, String)> {
@@ -43,7 +44,8 @@ pub(crate) fn files(machine: &Machine, modules: &[Module], built: &Built<'_>) ->
         files: &files,
         shapers: &shapers,
     });
-    kit.into_iter().chain(datasheets::files(blocks)).collect()
+    let bus = built.buses.first().map(BusComponentBlock::bus);
+    kit.into_iter().chain(datasheets::files(blocks, bus)).collect()
 }
 
 /// Adds the files to the folder.

@@ -39,6 +39,7 @@ pub mod text;
 mod tolerance;
 pub mod verify;
 mod verilog;
+mod vhdl;
 mod warning;
 
 pub use bench::{Simulator, clocks};

@@ -142,8 +142,8 @@ fn parse_beside(path: &Path, text: &str, read: &RefCell<Vec<(String, String)>>) 
 
 /// The device family of the machine file's target.
 pub fn family(machine: &Machine) -> Result<Family, Failure> {
-    match &machine.target {
-        Some(target) => target.family.parse().map_err(Failure::because),
+    match machine.target.as_ref().and_then(|target| target.family.as_ref()) {
+        Some(family) => family.parse().map_err(Failure::because),
         None => Ok(Family::default()),
     }
 }

@@ -91,6 +91,7 @@ pub fn run(options: &Options, observer: &dyn Observer) -> Result<Outcome<Documen
     checks.extend(checks::all(plan.simulator, machine, &design.design, &lockstep, &waves));
     checks.extend(checks::inline(&built));
     checks.extend(checks::link(built.link.as_ref()));
+    checks.extend(checks::buses(&built.buses));
     checks.extend(estimate.as_ref().and_then(|e| checks::fits(machine, e)));
     checks.extend(closed_loop.iter().flat_map(ClosedLoop::checks));
     let kinds = compare(machine, DEFAULT_BAND);
@@ -195,7 +196,7 @@ struct Rtl<'a> {
 }
 
 impl Rtl<'_> {
-    /// The shapers, the components, the stage or the inline shaper, and its line.
+    /// The shapers, the components, the stage or the inline shaper, its line, and what is on another bus.
     fn tops(&self) -> Vec<&dyn Block> {
         let stage = self.built.stage.as_ref().map(|stage| &stage.block);
         let components = self.built.components.iter().chain(stage);
@@ -208,6 +209,7 @@ impl Rtl<'_> {
             .chain(inline)
             .chain(with_registers.map(|inline| inline as &dyn Block))
             .chain(link)
+            .chain(self.built.buses.iter().map(|bus| bus as &dyn Block))
             .collect()
     }
 

@@ -77,6 +77,7 @@ pub(crate) fn add(
         active_low_axes: active_low.map(|axis| axis.name.as_str()).collect(),
         components: components?,
         inline,
+        bus: machine.target.as_ref().and_then(|target| target.bus),
     };
     if let Some(board) = board.filter(|board| design.stage.is_some() && !design.runs_on(*board)) {
         let text = format!(

@@ -209,6 +209,10 @@ impl Job {
             }
             others.push(Box::new(link));
         }
+        if let Some(bus) = built.buses.first().filter(|_| folder.is_some()) {
+            others.push(bus.bridge());
+        }
+        others.extend(built.buses.into_iter().map(|bus| Box::new(bus) as Box<dyn Block>));
         let folder = folder.map(|contents| contents.rtl);
         if let Some(files) = &folder {
             let there = Sources::found(files.clone());

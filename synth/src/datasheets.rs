@@ -3,6 +3,8 @@
 //!
 //! They are in the folder's `docs/`, as in the project. A link to a page that is not copied is replaced by its text.
 
+use posicast_blocks::bus_component::BridgedBus;
+
 /// Folder of the datasheets in the output folder.
 pub const FOLDER: &str = "docs";
 
@@ -26,6 +28,8 @@ const LINK: [(&str, &str); 1] = pages!["uart_bridge"];
 /// Datasheets of machines whose line is SPI; its frames are described in the page above.
 const SPI_LINK: [(&str, &str); 1] = pages!["spi_bridge"];
 
+/// Datasheets of the bridges to other buses, by the name of the block.
+const BUS: [(&str, &str); 2] = pages!["axi_lite_bridge" "wishbone_bridge"];
 /// Datasheets of machines with an inline shaper.
 const INLINE: [(&str, &str); 4] = pages!["inline" "inline_axis" "pulse_counter" "step_generator"];
 
@@ -50,8 +54,8 @@ pub enum BuiltBlocks {
     SpiLinkedInline,
 }
 
-/// The datasheets of a machine, as path in the output folder and text.
-pub fn files(built: BuiltBlocks) -> Vec<(String, String)> {
+/// The datasheets of a machine whose registers are on this bus if not on Avalon-MM, as path in the output folder and text.
+pub fn files(built: BuiltBlocks, bus: Option<BridgedBus>) -> Vec<(String, String)> {
     let is_inline = built >= BuiltBlocks::Inline;
     let at_least = |least| move |_: &&(&str, &str)| !is_inline && built >= least;
     let components = COMPONENTS.iter().filter(at_least(BuiltBlocks::Components));
@@ -68,6 +72,10 @@ pub fn files(built: BuiltBlocks) -> Vec<(String, String)> {
         .chain(stage)
         .chain(link)
         .chain(spi)
+        .chain(
+            BUS.iter()
+                .filter(|(name, _)| bus.is_some_and(|bus| bus.block() == *name)),
+        )
         .chain(INLINE.iter().filter(|_| is_inline))
         .chain(registers)
         .collect();
@@ -128,7 +136,7 @@ mod tests {
             (BuiltBlocks::LinkedStage, 17),
             (BuiltBlocks::Inline, 5),
         ] {
-            let files = files(built);
+            let files = files(built, None);
             assert_eq!(files.len(), pages);
             for (_, text) in &files {
                 for (at, _) in text.match_indices("](") {

@@ -21,8 +21,12 @@ pub(crate) fn generate(document: &Document) -> String {
         }
         _ => format!("top module: {} (the shapers)", document.top.join(", ")),
     };
+    let on_bus = match document.bus {
+        Some(bus) => format!("\non {bus}: {}", document.on_bus.join(", ")),
+        None => String::new(),
+    };
     format!(
-        "{} in {}: {}\n{top}\nnext: read {}; `posicast verify {}` compares this Verilog with its model\n",
+        "{} in {}: {}\n{top}{on_bus}\nnext: read {}; `posicast verify {}` compares this Verilog with its model\n",
         counted(document.files.len() as u64, "file"),
         folder.display(),
         entries(document.files.iter().map(Path::new)).join(", "),

@@ -506,7 +506,7 @@ fn cli_a_device_of_another_vendor_is_refused_with_a_remedy() {
     let machine = one_axis("kind = \"zvd\"", MODE) + "[target]\nfamily = \"ecp5\"\n";
     let words = [
         "machine.toml:14: target.family: found \"ecp5\"",
-        "remove [target]: the Verilog suits every device",
+        "leave it out: the Verilog suits every device",
     ];
     refused(&["design"], &machine, &words);
 }

@@ -15,6 +15,7 @@ use posicast_shaper::design::Findings;
 use posicast_shaper::unit::short;
 use posicast_synth::yosys::Estimate;
 use posicast_testbench::blocks::{Block, Sources};
+use posicast_testbench::bus_component::BusComponentBlock;
 use posicast_testbench::linked_stage::LinkedStageBlock;
 use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
 use posicast_testbench::wording::counted;
@@ -369,6 +370,21 @@ pub(crate) fn inline(built: &Built<'_>) -> Option<Check> {
     ))
 }
 
+/// The components on another bus, which a run does not simulate.
+pub(crate) fn buses(buses: &[BusComponentBlock]) -> Option<Check> {
+    let first = buses.first()?;
+    let reason = format!(
+        "a run does not simulate {}; `posicast verify MACHINE --block {}` does",
+        first.top(),
+        first.name()
+    );
+    Some(Check::not_exercised(
+        "the components on their bus, with its bridge, equal their models",
+        true,
+        &reason,
+    ))
+}
+
 /// The line to a host, which a run does not simulate.
 pub(crate) fn link(link: Option<&LinkedStageBlock>) -> Option<Check> {
     let link = link?;
@@ -386,7 +402,7 @@ pub(crate) fn link(link: Option<&LinkedStageBlock>) -> Option<Check> {
 
 /// The top module, without the components, must fit the device of the machine file; there is no check if the file names none.
 pub(crate) fn fits(machine: &Machine, estimate: &Estimate) -> Option<Check> {
-    machine.target.as_ref()?;
+    machine.target.as_ref()?.family.as_ref()?;
     let excess = estimate.excesses().first().map(|e| {
         format!(
             "{} {} needed, {} available, most of it in {}",

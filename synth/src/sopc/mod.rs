@@ -33,6 +33,7 @@ mod top;
 mod unit;
 
 use core::Core;
+use posicast_blocks::bus_component::BridgedBus;
 
 pub use board::{Board, UnknownBoard};
 pub use bridge::BridgeUnit;
@@ -59,6 +60,8 @@ pub struct Design<'a> {
     pub components: Vec<Unit<'a>>,
     /// The inline shaper, if it has one.
     pub inline: Option<InlineUnit>,
+    /// The bus of the further top modules, if the machine file asks for one.
+    pub bus: Option<BridgedBus>,
 }
 
 /// An inline shaper, as the README tells its user.

@@ -73,6 +73,18 @@ to overwrite a file that was edited, and names it.
         machine = design.machine,
         posicast = env!("CARGO_PKG_VERSION"),
     );
+    if let Some(bus) = design.bus {
+        let _ = writeln!(
+            text,
+            "| `rtl/*_{}.v` | what has registers, on {}: the top modules beside those on Avalon-MM; docs/{}.md |",
+            bus.suffix(),
+            bus.title(),
+            bus.block()
+        );
+    }
+    text.push_str(
+        "| `vhdl/` | for a design in VHDL: per top module a package with its component, and an instance to copy |\n",
+    );
     if let Some(InlineUnit { top, .. }) = &design.inline {
         let _ = writeln!(
             text,

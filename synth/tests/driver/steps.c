@@ -29,6 +29,8 @@ static void homing(posicast_stage *stage)
     need("homing", posicast_home_by_probe(stage, X, &how, LONG), POSICAST_OK);
     result("origin", posicast_origin(stage, X));
     result("index_setup", IORD_POSICAST_AXIS_INDEX(stage->base, X));
+    need("travel from the contact on", posicast_limit_travel(stage, X, COUNTS(1000), COUNTS(5000)), POSICAST_OK);
+    need("homing again", posicast_home_by_probe(stage, X, &how, LONG), POSICAST_OK);
     result("homed_at", (int32_t)IORD_POSICAST_AXIS_POSITION(stage->base, X));
 }
 

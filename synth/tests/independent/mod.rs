@@ -1,7 +1,10 @@
 //! Checks generated files with independent tools: systemrdl-compiler, the schema of CMSIS-SVD and its parser, FuseSoC
-//! with Verilator and Icarus, and cocotb with the bus driver of cocotb-bus.
+//! with Verilator and Icarus, and cocotb with the bus drivers of cocotb-bus, cocotbext-axi and cocotbext-wishbone.
 //!
 //! These are Python programs in `.venv` of the repository, which `scripts/install-tools` creates.
+
+mod buses;
+mod vhdl;
 
 use posicast_blocks::component::Component;
 use posicast_blocks::pwm::{ActiveLow, BridgeMode, PwmConfig};
@@ -191,6 +194,8 @@ fn crosssim_cocotb_reads_writes_and_runs_a_period_of_the_pwm() {
         .iter()
         .map(|module| write(folder.path(), &format!("{}.v", module.name), &module.text));
     let build = folder.path().join("build");
-    let said = output(python("run_cocotb.py").args([Path::new(top), &svd, &build]).args(files));
+    let bench = [Path::new("bench_pwm"), Path::new(top), &build];
+    let mut run = python("run_cocotb.py");
+    let said = output(run.env("POSICAST_SVD", svd).args(bench).args(files));
     assert!(said.contains("3 tests, 0 failed"), "{said}");
 }

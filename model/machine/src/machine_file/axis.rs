@@ -220,7 +220,7 @@ pub(super) fn read(
 
 /// Turns what a reader returned round, so that `?` ends at a refusal: `Some(None)` where the table is absent, `None`
 /// where it was refused.
-fn not_refused<T>(read: Option<Option<T>>) -> Option<Option<T>> {
+pub(super) fn not_refused<T>(read: Option<Option<T>>) -> Option<Option<T>> {
     match read {
         Some(value) => value.map(Some),
         None => Some(None),

@@ -1,6 +1,7 @@
 //! The tables that stand once in a machine file: its name, `[clock]`, `[fixed_point]`, `[target]`, and the list of
 //! its axes.
 
+use super::axis::not_refused;
 use super::error::ProblemCause;
 use super::hint::{self, KILO, MEGA_OR_KILO};
 use super::key::{Default, Key, Values};
@@ -8,6 +9,7 @@ use super::range::{NumberRange, RATIO_ROUNDING};
 use super::table::Table;
 use super::{AxisSection, ClockSection, FixedPoint, LinkSection, Machine, StageSection, Target, axis, link, stage};
 use crate::spelling::same_letters;
+use posicast_blocks::bus_component::BridgedBus;
 use posicast_blocks::shaper::WORD_BITS;
 use posicast_shaper::digitise::Digitise;
 use posicast_shaper::unit::short;
@@ -106,12 +108,30 @@ const FIXED_POINT_KEYS: &[Key] = &[
 ];
 
 const TARGET_KEYS: &[Key] = &[
-    Key::new("family", Values::Word(|| FAMILIES.to_vec()), "Device family.").required(),
+    Key::new(
+        "family",
+        Values::Word(|| FAMILIES.to_vec()),
+        "Device family of the estimates. Absent: Cyclone 10 LP.",
+    )
+    .rule("required beside `board`"),
     Key::new(
         "board",
         Values::Word(|| BOARDS.to_vec()),
         "Board of this family. Absent: `generate` writes a project for every known board.",
     ),
+    Key::new(
+        "bus",
+        Values::Word(|| BUSES.map(|(word, _)| word).to_vec()),
+        "Bus of the registers: a further top module per component, with its bridge.",
+    )
+    .default(Default::Word("avalon")),
+];
+
+/// The buses of `[target]`.
+const BUSES: [(&str, Option<BridgedBus>); 3] = [
+    ("avalon", None),
+    ("axi4-lite", Some(BridgedBus::AxiLite)),
+    ("wishbone", Some(BridgedBus::Wishbone { pipelined: false })),
 ];
 
 /// Reads the whole file.
@@ -361,10 +381,17 @@ fn read_fixed_point(table: &Table<'_, '_>) -> Option<FixedPoint> {
 
 fn read_target(table: &Table<'_, '_>) -> Option<Target> {
     table.allow(TARGET_KEYS);
-    table.require("family", FAMILIES.join(", "));
-    let otherwise = "for a device of Lattice, AMD or another family remove [target]: the Verilog suits every device, docs/kit.md says how to \
+    if table.has("board") {
+        table.require("family", FAMILIES.join(", "));
+    }
+    let otherwise = "for a device of Lattice, AMD or another family leave it out: the Verilog suits every device, docs/kit.md says how to \
                      build it for those, and `posicast synth --family` takes one of the list for an estimate";
-    let family = table.choice_else("family", &FAMILIES, otherwise);
+    let family = table
+        .has("family")
+        .then(|| table.choice_else("family", &FAMILIES, otherwise));
+    let bus = table
+        .has("bus")
+        .then(|| table.choice("bus", &BUSES.map(|(word, _)| word)));
     let board = table.text("board", BOARDS.join(", "));
     if let Some(unknown) = board.filter(|board| !BOARDS.contains(board)) {
         // A name with another number is another board, not a misspelling.
@@ -378,8 +405,10 @@ fn read_target(table: &Table<'_, '_>) -> Option<Target> {
         let (found, allowed) = (table.quote("board"), BOARDS.join(", "));
         table.report("board", ProblemCause::NotAChoice { found, allowed }, remedy);
     }
+    let bus = not_refused(bus)?.and_then(|word| BUSES.iter().find(|(other, _)| *other == word));
     Some(Target {
-        family: family?.to_owned(),
+        family: not_refused(family)?.map(str::to_owned),
         board: board.map(str::to_owned),
+        bus: bus.and_then(|(_, bus)| *bus),
     })
 }

@@ -88,6 +88,7 @@ use toml::de::DeTable;
 
 use crate::mechanics::ScrewDrive;
 use crate::unit::AxisUnit;
+use posicast_blocks::bus_component::BridgedBus;
 use posicast_blocks::link::Crc;
 use posicast_shaper::axis::{AxisMode, ShapedAxis, ShaperChoice};
 use posicast_shaper::digitise::Digitise;
@@ -224,10 +225,12 @@ pub struct FixedPoint {
 /// `[target]`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Target {
-    /// Device family, one of [`FAMILIES`].
-    pub family: String,
+    /// Device family, one of [`FAMILIES`]; always there beside a board.
+    pub family: Option<String>,
     /// Board, one of [`BOARDS`].
     pub board: Option<String>,
+    /// Bus of the registers, if it is not Avalon-MM.
+    pub bus: Option<BridgedBus>,
 }
 
 /// `[[axis]]`.

@@ -143,6 +143,8 @@ posicast_result posicast_home_by_probe(const posicast_stage *stage, uint32_t axi
         return POSICAST_BAD_ARGUMENT;
     if (posicast_state(stage, axis) != POSICAST_AXIS_STATUS_STATE_HOLD)
         return POSICAST_WRONG_STATE;
+    /* The approaches go past the contact, where the travel of an earlier homing may end. */
+    IOWR_POSICAST_AXIS_HOMED(stage->base, axis, 0);
     if (posicast_status(stage, axis) & touches)
         result = retract(stage, axis, probing, ticks);
     if (result == POSICAST_OK)
