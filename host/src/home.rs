@@ -38,6 +38,8 @@ impl<L: Read + Write> HostedStage<'_, L> {
             .probe
             .ok_or_else(|| self.no_contact(axis, "it has no [axis.probe]"))?;
         let away = -probe.side.sign() * probe.retract;
+        // The approaches go past the contact, where the travel of an earlier homing may end.
+        self.write_one(axis, "homed", 0)?;
         if self.touches(axis)? {
             self.shift(axis, away, probe.velocity)?;
         }

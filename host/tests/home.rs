@@ -97,6 +97,19 @@ fn an_axis_knows_its_position_after_touching_its_probe() {
 }
 
 #[test]
+fn an_axis_is_homed_again_where_its_travel_ends_at_the_contact() {
+    let machine = machine("active_low = true");
+    let stage = stage(&machine);
+    let mut host = open(&machine, &stage, -0.008);
+    host.switch_on(&[0], false).unwrap();
+    let first = host.home(0).unwrap();
+    let again = host.home(0).unwrap();
+    assert!((first - again).abs() <= 1, "{first} {again}");
+    let status = host.status().unwrap()[0].clone();
+    assert!(status.homed && status.can_start && status.causes == 0, "{status:?}");
+}
+
+#[test]
 fn an_axis_without_a_contact_is_not_homed() {
     let machine = machine("");
     let stage = stage(&machine);

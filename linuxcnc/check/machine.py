@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """What LinuxCNC does with a posicast stage: scripts/linuxcnc makes this its [DISPLAY].
 
-It homes the axes, runs a program with the machine's shapers and without, and then pulls one thing after the other out. Every line that it
-prints is a check that held, or a figure; it ends with `done`, or with what did not hold.
+It homes the axes, runs a program with the machine's shapers and without, and then pulls one thing after the other out. With `steps` it does
+so with the machine of steps.toml, which is homed by probes. Every line that it prints is a check that held, or a figure; it ends with
+`done`, or with what did not hold.
 """
 import json
 import os
@@ -16,10 +17,14 @@ import linuxcnc
 HERE = os.path.dirname(os.path.abspath(__file__))
 PROGRAM = os.path.join(HERE, "part.ngc")
 EMERGENCY_STOP, WATCHDOG = 1 << 0, 1 << 13
-FOLLOWING_ERROR, ENCODER = 1 << 7, 1 << 10 | 1 << 11
+FOLLOWING_ERROR, DEVIATION, ENCODER = 1 << 7, 1 << 8, 1 << 10 | 1 << 11
 CLOCK_HZ = 50e6
-# Two counts of the encoder.
-REST_MM = 0.002
+STEPS = "steps" in sys.argv
+# Two counts of the encoder, or two steps.
+REST_MM = 0.005 if STEPS else 0.002
+STEP_M = 1e-3 / 400
+# Counts from the start to the indices, or to the contacts of the probes of steps.toml, 3 mm away.
+ORIGINS = [-1200, 1200] if STEPS else [777, 777]
 PATIENCE_S = float(os.environ.get("POSICAST_PATIENCE_S", "120"))
 
 command, status, errors = linuxcnc.command(), linuxcnc.stat(), linuxcnc.error_channel()
@@ -188,6 +193,26 @@ def encoder_fault(stage):
     check(True, "encoder fault: the machine is homed again")
 
 
+def stall(stage):
+    # Near both contacts: homing approaches them slowly.
+    move("G0 X1 Y57")
+    before = stage("state")["axes"][0]["position"]
+    move("G1 F3000 X10", wait=False)
+    until(lambda: status.current_vel > 5, "the move begins")
+    stage("jam x")
+    until(lambda: status.task_state != linuxcnc.STATE_ON, "LinuxCNC switches off")
+    until(lambda: not any(axis["outputs_on"] for axis in stage("state")["axes"]), "the outputs go off")
+    off(stage, DEVIATION, "stall")
+    shown("posicast: axis x: deviation", "stall")
+    stage("free x")
+    switch_on()
+    home()
+    move("G0 X1 Y57")
+    after = stage("state")["axes"][0]["position"]
+    # Each of the two homings is true to a step.
+    check(abs(after - before) <= 2 * STEP_M, f"stall: homed again, x is where it was: {(after - before) * 1e6:.1f} um")
+
+
 def servo_thread_stops(stage):
     move("G0 X0 Y0")
     start_program()
@@ -219,21 +244,46 @@ def main():
     switch_on()
     home()
     origins = [axis["origin"] for axis in stage("state")["axes"]]
-    check(origins == [777, 777], f"homing sets the origin at the index, to the count: {origins}")
+    exact = all(abs(is_at - should) <= STEPS for is_at, should in zip(origins, ORIGINS))
+    contact = "contact, within a step" if STEPS else "index, to the count"
+    check(exact, f"homing sets the origin at the {contact}: {origins}")
+    move("G0 X0 Y0")
     shaped = program(stage, "shaped")
     if "program" in sys.argv:
         check(stage("state")["mismatches"] == 0, "the Verilog equals the model in every clock")
-        stage.quit()
-        print("done", flush=True)
-        return
+    elif STEPS:
+        machine_with_steps(stage, shaped)
+    else:
+        machine_with_encoders(stage, shaped, folder)
+    stage.quit()
+    print("done", flush=True)
+
+
+def program_unshaped(stage, shaped):
+    unshaped = program(stage, "unshaped")
+    check(shaped["peak_um"] < unshaped["peak_um"], "the load is nearer to the path with shapers than without")
+
+
+def machine_with_steps(stage, shaped):
+    for axis in (0, 1):
+        pin(f"posicast.{axis}.unshaped", 1)
+    program_unshaped(stage, shaped)
+    for axis in (0, 1):
+        pin(f"posicast.{axis}.unshaped", 0)
+    said.clear()
+    emergency_stop(stage)
+    stall(stage)
+    link_breaks(stage)
+
+
+def machine_with_encoders(stage, shaped, folder):
     print("figure accesses of the bus per servo period, two axes:", int(pin("posicast.accesses")), flush=True)
     lags = {"shaped": lag()}
     for axis in (0, 1):
         pin(f"posicast.{axis}.unshaped", 1)
     lags["unshaped"] = lag()
     print("figure lag from LinuxCNC's command to the encoder, s:", json.dumps(lags), flush=True)
-    unshaped = program(stage, "unshaped")
-    check(shaped["peak_um"] < unshaped["peak_um"], "the load is nearer to the path with shapers than without")
+    program_unshaped(stage, shaped)
     move("G1 F6000 X40", wait=False)
     time.sleep(0.1)
     for axis in (0, 1):
@@ -256,8 +306,6 @@ def main():
     encoder_fault(stage)
     servo_thread_stops(stage)
     link_breaks(stage)
-    stage.quit()
-    print("done", flush=True)
 
 
 main()

@@ -13,11 +13,12 @@
 //! |---|---|
 //! | `set LINE LEVEL` | drives an input, such as `emergency_stop_n` |
 //! | `stick AXIS`, `mend AXIS` | line A of an encoder stays where it is; follows the axis again |
+//! | `jam AXIS`, `free AXIS` | the motor of an axis stands, whatever it is commanded; moves again |
 //! | `drift PPM` | the stage's clock is faster by so much |
 //! | `record`, `path NAME PROGRAM` | records; compares the load with the program's path and keeps the error for the picture |
 //! | `picture FILE` | draws the errors |
 //! | `drop` | closes the link, and lets the machine run for half a second |
-//! | `state` | states, causes and outputs of the axes |
+//! | `state` | states, causes, outputs and positions of the axes |
 
 mod link;
 mod path;

@@ -21,6 +21,8 @@ type Outcome<T> = Result<T, Box<dyn Error>>;
 
 /// Count of the index of each encoder.
 const INDEX_AT: i64 = 777;
+/// Distance in m from the start to the contact of a probe, towards its side.
+const CONTACT_M: f64 = 3e-3;
 /// Time in seconds for which the machine runs on by itself after a dropped link, and whenever LinuxCNC is silent.
 const ALONE_S: f64 = 0.5;
 
@@ -41,6 +43,10 @@ pub(crate) struct Server {
     dropped: bool,
     recordings: Vec<Recording>,
     sample_s: f64,
+    /// Whether an axis has step lines, whose levels at rest say nothing.
+    steps: Vec<bool>,
+    /// Position of the program's zero from the origin of each axis, m or rad: that of a probe's contact is not 0.
+    zeros: Vec<f64>,
 }
 
 impl Server {
@@ -53,14 +59,14 @@ impl Server {
         } else {
             None
         };
-        let options = PlantOptions {
-            index_at: INDEX_AT,
-            ..PlantOptions::default()
-        };
-        let plants = machine
-            .axes
-            .iter()
-            .map(|axis| AxisPlant::new(axis, &machine.clock, &options));
+        let plants = machine.axes.iter().map(|axis| {
+            let options = PlantOptions {
+                index_at: INDEX_AT,
+                contact_at: axis.probe.map_or(0.0, |probe| probe.side.sign() * CONTACT_M),
+                ..PlantOptions::default()
+            };
+            AxisPlant::new(axis, &machine.clock, &options)
+        });
         let bench = StageBench::new(&stage.config, &component, plants.collect::<Result<_, _>>()?, device, 1)?;
         Ok(Self {
             bench,
@@ -71,6 +77,12 @@ impl Server {
             dropped: false,
             recordings: Vec::new(),
             sample_s: machine.clock.sample_period_s(),
+            steps: machine.axes.iter().map(|axis| axis.steps.is_some()).collect(),
+            zeros: machine
+                .axes
+                .iter()
+                .map(|axis| axis.probe.map_or(0.0, |probe| -probe.position))
+                .collect(),
         })
     }
 
@@ -155,6 +167,8 @@ impl Server {
             ["set", line, level] => self.bench.set(line, level.parse()?).map(|()| "{}".to_owned())?,
             ["stick", axis] => self.wire(axis, true)?,
             ["mend", axis] => self.wire(axis, false)?,
+            ["jam", axis] => self.jam(axis, true)?,
+            ["free", axis] => self.jam(axis, false)?,
             ["drift", ppm] => {
                 self.drift = ppm.parse::<f64>()? * 1e-6;
                 "{}".to_owned()
@@ -165,7 +179,7 @@ impl Server {
             }
             ["path", name, program] => {
                 let samples = self.bench.recorded();
-                let origins = [self.origin(0)?, self.origin(1)?];
+                let origins = [self.zero(0)?, self.zero(1)?];
                 let recording = Recording::new(
                     name,
                     &std::fs::read_to_string(program)?,
@@ -207,8 +221,14 @@ impl Server {
         Ok("{}".to_owned())
     }
 
-    /// Position in m or rad at which an axis reports 0.
-    fn origin(&mut self, axis: usize) -> Outcome<f64> {
+    fn jam(&mut self, axis: &str, jammed: bool) -> Outcome<String> {
+        let place = self.place(axis)?;
+        self.bench.jam(place, jammed);
+        Ok("{}".to_owned())
+    }
+
+    /// Position in m or rad of a program's zero.
+    fn zero(&mut self, axis: usize) -> Outcome<f64> {
         let name = self.bench.axes()[axis].clone();
         let counts = self.bench.read(&format!("{name}_origin"))? as i32;
         let plant = self.bench.plant(axis);
@@ -217,7 +237,7 @@ impl Server {
             0 => 0.0,
             count => plant.motion().position / count as f64,
         };
-        Ok(f64::from(counts) * per_count)
+        Ok(f64::from(counts) * per_count + self.zeros[axis])
     }
 
     fn state(&mut self) -> Outcome<String> {
@@ -237,11 +257,12 @@ impl Server {
             ];
             let named = ["off", "ready", "hold", "run", "quick stop", "fault"];
             let place = names.iter().position(|known| *known == number).unwrap_or(0);
-            let is_on = pins.drive_enable || pins.a_high || pins.a_low || pins.b_high || pins.b_low;
-            let speed = self.bench.plant(axis).motion().velocity;
+            let gates = pins.a_high || pins.a_low || pins.b_high || pins.b_low;
+            let is_on = pins.drive_enable || (gates && !self.steps[axis]);
+            let motion = self.bench.plant(axis).motion();
             axes.push(format!(
-                "{{\"axis\": {name:?}, \"state\": {:?}, \"causes\": {causes}, \"origin\": {origin}, \"outputs_on\": {is_on}, \"velocity\": {speed:e}}}",
-                named[place]
+                "{{\"axis\": {name:?}, \"state\": {:?}, \"causes\": {causes}, \"origin\": {origin}, \"outputs_on\": {is_on}, \"velocity\": {:e}, \"position\": {:e}}}",
+                named[place], motion.velocity, motion.position
             ));
         }
         let (mismatches, _) = self.bench.mismatches();

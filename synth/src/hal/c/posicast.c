@@ -49,8 +49,10 @@ typedef enum { OFF, CLEAR, SWITCH_ON, FOLLOW, FAULT } phase;
 
 typedef struct {
     double origin;      /* counts since reset at which LinuxCNC's position is 0 */
+    int32_t shift;      /* counts from the position register to LinuxCNC's position, while that was preset for an index to come */
     uint32_t index_setup;
     int seeks_index;
+    int limits_wait;    /* homed, but not yet at rest inside its travel */
     uint32_t shaper;
 } axis_state;
 
@@ -117,18 +119,41 @@ static int every_axis(uint32_t wanted_state, uint32_t mask)
     return 1;
 }
 
+/*
+ * The approach goes past a contact, where the travel may end, and the shaper has it in its memory for a while: the soft limits begin
+ * once the axis rests inside its travel.
+ */
+static void limit_travel(uint32_t axis)
+{
+    const int32_t *travel = posicast_hal_travel[axis];
+    const int32_t command = posicast_command_position(&hardware, axis);
+    const int64_t at = command - (int64_t)posicast_origin(&hardware, axis) * 256;
+
+    if (at < travel[0] || at > travel[1] || command != (int32_t)IORD_POSICAST_AXIS_SHAPED_POSITION(0, axis))
+        return;
+    (void)posicast_limit_travel(&hardware, axis, travel[0], travel[1]);
+    axes[axis].limits_wait = 0;
+}
+
 /* LinuxCNC arms the index by index-enable, and the component takes it back where the position was set to 0 at the index. */
 static void follow_index(uint32_t axis)
 {
     axis_state *of = &axes[axis];
     hal_bit_t *index_enable = hal->axis[axis].index_enable;
 
+    now.position[axis] += of->shift;
     if (*index_enable && !of->seeks_index) {
+        const int32_t before = posicast_origin(&hardware, axis);
+
         of->index_setup = (uint32_t)IORD_POSICAST_AXIS_INDEX(0, axis);
+        /* It acts at once, and again at the index; LinuxCNC sees the second alone. */
         IOWR_POSICAST_AXIS_PRESET(0, axis, 0u);
         IOWR_POSICAST_AXIS_INDEX(0, axis, (of->index_setup & ~POSICAST_AXIS_INDEX_INDEX_ALWAYS_MSK) |
                                               POSICAST_AXIS_INDEX_INDEX_PRESETS_MSK);
         IOWR_POSICAST_AXIS_INDEX_ARM(0, axis, 0u);
+        IOWR_POSICAST_AXIS_HOMED(0, axis, 0u);
+        of->limits_wait = 0;
+        of->shift += posicast_origin(&hardware, axis) - before;
         of->seeks_index = 1;
         return;
     }
@@ -139,9 +164,9 @@ static void follow_index(uint32_t axis)
     of->seeks_index = 0;
     if (*index_enable) {
         of->origin = posicast_origin(&hardware, axis);
+        of->shift = 0;
         now.position[axis] = (int32_t)IORD_POSICAST_AXIS_POSITION(0, axis);
-        if (posicast_hal_travel[axis][0] < posicast_hal_travel[axis][1])
-            (void)posicast_limit_travel(&hardware, axis, posicast_hal_travel[axis][0], posicast_hal_travel[axis][1]);
+        of->limits_wait = posicast_hal_travel[axis][0] < posicast_hal_travel[axis][1];
         *index_enable = 0;
     }
 }
@@ -183,8 +208,11 @@ static void read_stage(void *argument, long period)
         status[axis] = posicast_status(&hardware, axis);
         causes[axis] = posicast_causes(&hardware, axis);
         ok = ok && status[axis] & POSICAST_AXIS_STATUS_LEVEL_EMERGENCY_STOP_N_MSK;
-        if (!posicast_link_is_broken())
+        if (!posicast_link_is_broken()) {
             follow_index(axis);
+            if (axes[axis].limits_wait)
+                limit_travel(axis);
+        }
     }
     if (posicast_link_is_broken() && at_phase != FAULT)
         fail("the link to the stage is broken; its watchdog stops the axes. Load the component anew");

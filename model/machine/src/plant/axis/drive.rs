@@ -163,6 +163,7 @@ impl Driven {
                 if command.released {
                     (self.position, self.velocity) = stepper.cell(command, (self.position, self.velocity));
                 } else {
+                    stepper.turn(command);
                     self.velocity = 0.0;
                 }
                 if !command.enabled {

@@ -74,17 +74,25 @@ impl Stepper {
         }
     }
 
-    /// Simulates a cell from a position and velocity, and returns those at its end.
-    pub(super) fn cell(&mut self, command: &Command, (position, velocity): (f64, f64)) -> (f64, f64) {
+    /// Turns the field by the steps of a cell; the rotor may be held.
+    pub(super) fn turn(&mut self, command: &Command) {
         let field = self.origin + command.steps as f64 * self.step;
         let moved = field - std::mem::replace(&mut self.field, field);
-        let Some(rotor) = &mut self.rotor else {
+        if let Some(rotor) = &mut self.rotor {
+            rotor.field_velocity += (moved / self.cell_s - rotor.field_velocity) * rotor.follows;
+        }
+    }
+
+    /// Simulates a cell from a position and velocity, and returns those at its end.
+    pub(super) fn cell(&mut self, command: &Command, (position, velocity): (f64, f64)) -> (f64, f64) {
+        self.turn(command);
+        let field = self.field;
+        let Some(rotor) = &self.rotor else {
             if !command.enabled {
                 return (position, 0.0);
             }
             return (field, (field - position) / self.cell_s);
         };
-        rotor.field_velocity += (moved / self.cell_s - rotor.field_velocity) * rotor.follows;
         let acceleration = if command.enabled {
             let force = rotor.largest / (1.0 + (velocity / rotor.corner).powi(2)).sqrt();
             force * (TAU * (field - position) / rotor.pitch).sin() + rotor.damping * (rotor.field_velocity - velocity)
@@ -110,6 +118,25 @@ impl Stepper {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_rotor_that_was_held_stays_within_half_a_pitch() {
+        let mut stepper = Stepper::new(Some(&NEMA17), 80_000.0, CELL_S, 0.0);
+        // A thousand steps, one per 100 µs, while the rotor is held.
+        for cell in 0..50_000 {
+            stepper.turn(&command(cell / 50));
+        }
+        let (mut position, mut velocity) = (0.0, 0.0);
+        for _ in 0..200_000 {
+            (position, velocity) = stepper.cell(&command(1000), (position, velocity));
+        }
+        // It swings to the nearest place that is the same to the field: 1000 steps less whole pitches of 64.
+        let pitch = 64.0 / 80_000.0;
+        let at = (1000.0 / 80_000.0_f64).rem_euclid(pitch);
+        let nearest = if at > pitch / 2.0 { at - pitch } else { at };
+        assert!((position - nearest).abs() < 1e-6, "{position} {nearest}");
+        assert_eq!(stepper.lost_steps(1000, position), 1024);
+    }
 
     const CELL_S: f64 = 2e-6;
     const NEMA17: StepperSection = StepperSection {
