@@ -70,7 +70,7 @@ fn tops<'a>(machine: &'a Machine, modules: &'a [Module], built: &'a Built<'_>) -
         let of_bus = top(&bus.top(), Some(bus.component()))?;
         let parameters = match bus.bus() {
             BridgedBus::AxiLite => Vec::new(),
-            BridgedBus::Wishbone { pipelined } => vec![("PIPELINED", pipelined)],
+            BridgedBus::Wishbone { pipelined } => vec![("PIPELINED", pipelined.into())],
         };
         Some(VhdlTop { parameters, ..of_bus })
     });

@@ -80,8 +80,8 @@ fn body(component: &Component, bus: BridgedBus, component_name: &str, bridge_nam
     }));
     let parameters = match bus {
         BridgedBus::AxiLite => "",
-        BridgedBus::Wishbone { pipelined: false } => "#(parameter [0:0] PIPELINED = 1'b0) ",
-        BridgedBus::Wishbone { pipelined: true } => "#(parameter [0:0] PIPELINED = 1'b1) ",
+        BridgedBus::Wishbone { pipelined: false } => "#(parameter PIPELINED = 0) ",
+        BridgedBus::Wishbone { pipelined: true } => "#(parameter PIPELINED = 1) ",
     };
     let notes = match bus {
         BridgedBus::AxiLite => port_notes(axi_lite_bridge::PORTS),
@@ -94,7 +94,7 @@ fn body(component: &Component, bus: BridgedBus, component_name: &str, bridge_nam
         "s_axi_awaddr" | "s_axi_araddr" | "wb_adr" => {
             format!("{{{}'d0, {}}}", ADDRESS_BITS - address_bits, port.name)
         }
-        "pipelined" => "PIPELINED".to_owned(),
+        "pipelined" => "PIPELINED != 0".to_owned(),
         name => name.to_owned(),
     };
     let clock = ("clk".to_owned(), "clk".to_owned());

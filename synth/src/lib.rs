@@ -1,11 +1,13 @@
 //! Everything that posicast writes for a device: the output folder ([`package`]), the files for Quartus ([`sopc`]),
 //! the C driver ([`driver`]), the component for LinuxCNC ([`hal`]), the documents of the registers ([`register_documents`]), the datasheets
-//! ([`datasheets`]), the kit for the user's own design ([`kit`]), its declarations in VHDL ([`vhdl`]), and estimates of the resources ([`yosys`]) and the
+//! ([`datasheets`]), the kit for the user's own design ([`kit`]), its declarations in VHDL ([`vhdl`]), IP cores for
+//! Vivado ([`amd`]), and estimates of the resources ([`yosys`]) and the
 //! clock ([`clock`]) of its Verilog.
 //!
 //! Folder and estimates do not know how the files were made: they take bytes and file names. The others are written
 //! from the register maps and ports of `posicast-blocks`.
 
+pub mod amd;
 pub mod clock;
 pub mod core_file;
 pub mod datasheets;

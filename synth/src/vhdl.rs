@@ -29,8 +29,8 @@ pub struct VhdlTop<'a> {
     pub map: Option<&'a RegisterMap>,
     /// The tap table of each axis whose shaper is in it, with the axis's name.
     pub tables: Vec<(&'a str, &'a TapTable)>,
-    /// Parameters of one bit, with their defaults.
-    pub parameters: Vec<(&'a str, bool)>,
+    /// Its parameters, whole numbers, with their defaults.
+    pub parameters: Vec<(&'a str, u32)>,
 }
 
 /// A name that VHDL does not allow.
@@ -94,12 +94,10 @@ fn interface(top: &VhdlTop<'_>, indent: usize) -> String {
     let space = " ".repeat(indent);
     let mut text = String::new();
     if !top.parameters.is_empty() {
-        let lines = top.parameters.iter().map(|(name, default)| {
-            format!(
-                "{space}    {name} : std_logic_vector(0 downto 0) := \"{}\"",
-                u8::from(*default)
-            )
-        });
+        let lines = top
+            .parameters
+            .iter()
+            .map(|(name, default)| format!("{space}    {name} : natural := {default}"));
         let _ = write!(
             text,
             "{space}generic (\n{}\n{space});\n",

@@ -25,6 +25,11 @@ fn cli_buses_have_a_top_per_component_and_their_datasheet() {
             assert!(text.contains(port), "{}", path.display());
         }
         assert!(output.join(format!("docs/{block}.md")).is_file());
+        // Cores for Vivado are on AXI4-Lite.
+        let core = output.join(format!("amd/xy_stage_stage_{suffix}/component.xml"));
+        assert_eq!(core.is_file(), bus == "axi4-lite");
+        let package = std::fs::read_to_string(output.join(format!("vhdl/xy_stage_stage_{suffix}_pkg.vhd"))).unwrap();
+        assert_eq!(package.contains("PIPELINED : natural := 0"), bus == "wishbone");
         // The component itself stays what it is on its own bus.
         assert!(output.join("rtl/xy_stage_stage.v").is_file());
     }

@@ -6,8 +6,8 @@
 //! | `docs/NAME.rdl` | SystemRDL 2.0 | PeakRDL and similar tools: HTML, UVM, IP-XACT |
 //! | `docs/NAME.svd` | CMSIS-SVD 1.3 | debuggers, and generators of register access in C and Rust |
 //!
-//! All three come from the one [`RegisterMap`]. IP-XACT is not written, because PeakRDL makes it from the SystemRDL,
-//! and it would contain nothing that the other two do not.
+//! All three come from the one [`RegisterMap`]. IP-XACT is written for cores on AXI4-Lite only ([`crate::amd`]); PeakRDL makes it from the
+//! SystemRDL, too.
 //!
 //! On the bus each word has an address of its own; in these formats addresses count bytes: word · 4.
 
@@ -18,7 +18,7 @@ use crate::datasheets::FOLDER;
 use posicast_blocks::registers::{Access, Field, Register, RegisterMap, markdown};
 
 /// Bytes per word.
-const WORD_BYTES: u32 = 4;
+pub(crate) const WORD_BYTES: u32 = 4;
 
 /// The documents `name` of the registers that all components `tops` have, as path in the output folder and text.
 pub fn files(name: &str, tops: &[String], map: &RegisterMap) -> [(String, String); 3] {
@@ -45,7 +45,7 @@ fn about(components: &str, map: &RegisterMap) -> String {
 
 /// Access of software to a register.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Software {
+pub(crate) enum Software {
     Read,
     ReadWrite,
     /// Reads flags; writing one clears them.
@@ -53,7 +53,7 @@ enum Software {
     Write,
 }
 
-fn software(access: &Access) -> Software {
+pub(crate) fn software(access: &Access) -> Software {
     match access {
         Access::Constant | Access::Live | Access::Shadow { .. } => Software::Read,
         Access::Configuration
@@ -67,7 +67,7 @@ fn software(access: &Access) -> Software {
 }
 
 /// Returns its fields; one for the whole word if a write of any value has an effect.
-fn fields(map: &RegisterMap, register: &Register) -> Vec<Field> {
+pub(crate) fn fields(map: &RegisterMap, register: &Register) -> Vec<Field> {
     match map.fields(register) {
         [] => vec![Field::new("any", 0, 32, "any value: the write itself counts")],
         fields => fields.to_vec(),
@@ -79,8 +79,13 @@ fn has_reset(access: &Access) -> bool {
     !matches!(access, Access::Live | Access::Shadow { .. }) && software(access) != Software::Write
 }
 
+/// The text in XML.
+pub(crate) fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
 /// Meaning of a field, with its unit in brackets.
-fn meaning(field: &Field) -> String {
+pub(crate) fn meaning(field: &Field) -> String {
     match field.unit.as_str() {
         "" => field.meaning.clone(),
         unit => format!("{} [{unit}]", field.meaning),

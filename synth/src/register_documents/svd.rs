@@ -2,7 +2,7 @@
 //!
 //! The peripheral is at address 0, because the system determines its address: add the component's base.
 
-use super::{Software, WORD_BYTES, about, fields, has_reset, meaning, software};
+use super::{Software, WORD_BYTES, about, escaped, fields, has_reset, meaning, software};
 use posicast_blocks::registers::{Field, Format, Register, RegisterMap};
 use std::fmt::Write;
 
@@ -107,8 +107,4 @@ fn write_field(line: &mut dyn FnMut(usize, &str), field: &Field) {
         line(3, "</enumeratedValues>");
     }
     line(2, "</field>");
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

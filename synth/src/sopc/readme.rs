@@ -7,6 +7,7 @@ use super::core::{Core, Line};
 use super::pins::Pin;
 use super::unit::Unit;
 use super::{Design, InlineUnit, system};
+use posicast_blocks::bus_component::BridgedBus;
 use posicast_blocks::linked_stage::BridgeConfig;
 
 /// A board with a project, the project's content, and its pins.
@@ -81,6 +82,9 @@ to overwrite a file that was edited, and names it.
             bus.title(),
             bus.block()
         );
+        if bus == BridgedBus::AxiLite {
+            text.push_str("| `amd/` | these modules as IP cores for Vivado, and block designs for a Zynq-7000 and a MicroBlaze |\n");
+        }
     }
     text.push_str(
         "| `vhdl/` | for a design in VHDL: per top module a package with its component, and an instance to copy |\n",

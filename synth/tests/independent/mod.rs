@@ -3,6 +3,7 @@
 //!
 //! These are Python programs in `.venv` of the repository, which `scripts/install-tools` creates.
 
+mod amd;
 mod buses;
 mod vhdl;
 

@@ -15,7 +15,7 @@ fn stub(top: &VhdlTop<'_>) -> String {
     let mut text = "library ieee;\nuse ieee.std_logic_1164.all;\n".to_owned();
     let _ = writeln!(text, "entity {} is", top.name);
     for (name, _) in &top.parameters {
-        let _ = writeln!(text, "generic ({name} : std_logic_vector(0 downto 0));");
+        let _ = writeln!(text, "generic ({name} : natural);");
     }
     text.push_str("port (clk : in std_logic");
     for port in top.ports {
@@ -101,7 +101,7 @@ fn ghdl_elaborates_the_stage_on_every_bus_and_knows_its_addresses() {
     assert!(!holds(folder.path(), "xy_stage_stage", &asserted(of("x_status") + 1)));
     elaborated(&on_bus("xy_stage_stage_axi", &axi, map));
     elaborated(&VhdlTop {
-        parameters: vec![("PIPELINED", false)],
+        parameters: vec![("PIPELINED", 0)],
         ..on_bus("xy_stage_stage_wishbone", &wishbone, map)
     });
 }
