@@ -8,7 +8,7 @@ use crate::emit::print::{self, Lines};
 use crate::emit::{EmitError, Header, Module, Type, add};
 use posicast_blocks::bus_component::{BridgedBus, INNER_PREFIX, mapped, ports};
 use posicast_blocks::component::Component;
-use posicast_blocks::{Direction, Port, axi_lite_bridge, port_notes, wishbone_bridge};
+use posicast_blocks::{Port, axi_lite_bridge, port_notes, wishbone_bridge};
 
 /// Width of the bridges' word addresses.
 const ADDRESS_BITS: u32 = 16;
@@ -69,15 +69,6 @@ fn header(name: &str, component: &str, bus: BridgedBus) -> String {
 }
 
 fn body(component: &Component, bus: BridgedBus, component_name: &str, bridge_name: &str) -> String {
-    let ports = ports(component, bus);
-    let mut list = vec![("input  wire", bit(), "clk".to_owned())];
-    list.extend(ports.iter().map(|port| {
-        let keyword = match port.direction {
-            Direction::Input => "input  wire",
-            Direction::Output => "output wire",
-        };
-        (keyword, of_port(port), port.name.clone())
-    }));
     let parameters = match bus {
         BridgedBus::AxiLite => "",
         BridgedBus::Wishbone { pipelined: false } => "#(parameter PIPELINED = 0) ",
@@ -87,7 +78,7 @@ fn body(component: &Component, bus: BridgedBus, component_name: &str, bridge_nam
         BridgedBus::AxiLite => port_notes(axi_lite_bridge::PORTS),
         BridgedBus::Wishbone { .. } => port_notes(wishbone_bridge::PORTS),
     };
-    let list = print::noted_port_list(&list, &notes);
+    let list = print::wire_port_list(true, &ports(component, bus), &notes);
     let list = format!("{parameters}{}", list.trim_end());
     let address_bits = component.map().address_bits();
     let widened = |port: &Port| match port.name.as_str() {
@@ -110,7 +101,7 @@ fn body(component: &Component, bus: BridgedBus, component_name: &str, bridge_nam
         lines.line("");
         lines.line("// The words that have a register.");
         let address = format!("avm_address[{}:0]", address_bits - 1);
-        let literal = |offset: u32| of_bits(address_bits).literal(offset.into());
+        let literal = |offset: u32| Type::bits(address_bits).literal(offset.into());
         let ranges = mapped(component.map());
         let terms: Vec<String> = ranges
             .iter()
@@ -149,19 +140,4 @@ fn body(component: &Component, bus: BridgedBus, component_name: &str, bridge_nam
         ));
     });
     lines.text
-}
-
-fn bit() -> Type {
-    of_bits(1)
-}
-
-fn of_bits(width: u32) -> Type {
-    Type { width, signed: false }
-}
-
-fn of_port(port: &Port) -> Type {
-    Type {
-        width: port.width,
-        signed: port.signed,
-    }
 }

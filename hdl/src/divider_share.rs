@@ -107,11 +107,6 @@ fn base_name(channels: usize) -> String {
 /// # Errors
 /// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(channels: usize, prefix: &str) -> Result<Vec<Module>, EmitError> {
-    let parameter = |name: &str, value: String, meaning: &str| Parameter {
-        name: name.to_owned(),
-        value,
-        meaning: meaning.to_owned(),
-    };
     let options = EmitOptions {
         top: base_name(channels),
         prefix: prefix.to_owned(),
@@ -119,8 +114,8 @@ pub fn emit(channels: usize, prefix: &str) -> Result<Vec<Module>, EmitError> {
             about: String::new(),
             ports: port_notes(PORTS),
             parameters: vec![
-                parameter("channels", channels.to_string(), "pulse counters"),
-                parameter("share_clocks", SHARE_CLOCKS.to_string(), "clocks per channel"),
+                Parameter::new("channels", channels, "pulse counters"),
+                Parameter::new("share_clocks", SHARE_CLOCKS, "clocks per channel"),
             ],
         },
     };

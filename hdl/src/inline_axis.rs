@@ -150,11 +150,6 @@ fn base_name(config: &InlineAxisConfig) -> String {
 /// # Errors
 /// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(config: &InlineAxisConfig, prefix: &str) -> Result<Vec<Module>, EmitError> {
-    let parameter = |name: &str, value: String, meaning: &str| Parameter {
-        name: name.to_owned(),
-        value,
-        meaning: meaning.to_owned(),
-    };
     let low = config.lines_active_low();
     let low = match (low.a, low.b) {
         (false, false) => "none",
@@ -172,17 +167,17 @@ pub fn emit(config: &InlineAxisConfig, prefix: &str) -> Result<Vec<Module>, Emit
                     .to_owned(),
             ports: port_notes(PORTS),
             parameters: vec![
-                parameter(
+                Parameter::new(
                     "limit_steps",
-                    config.limit_steps().to_string(),
+                    config.limit_steps(),
                     "of the input in a tick; more stop the axis",
                 ),
-                parameter(
+                Parameter::new(
                     "settle_ticks",
-                    config.settle_ticks().to_string(),
+                    config.settle_ticks(),
                     "without a step of the input, until it may be settled",
                 ),
-                parameter("active low lines", low.to_owned(), "off at high"),
+                Parameter::new("active low lines", low, "off at high"),
             ],
         },
     };

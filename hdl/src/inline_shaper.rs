@@ -13,30 +13,25 @@ use posicast_blocks::inline_shaper::InlineShaper;
 /// [`EmitError`] where `name` or `prefix` is not a valid Verilog name.
 pub fn emit(shaper: &InlineShaper, name: &str, prefix: &str) -> Result<Vec<Module>, EmitError> {
     let config = shaper.config();
-    let parameter = |name: String, value: String, meaning: &str| Parameter {
-        name,
-        value,
-        meaning: meaning.to_owned(),
-    };
-    let mut parameters = vec![parameter(
-        "tick_clocks".to_owned(),
-        config.tick.tick_clocks().to_string(),
+    let mut parameters = vec![Parameter::new(
+        "tick_clocks",
+        config.tick.tick_clocks(),
         "from tick to tick",
     )];
     for axis in &config.axes {
-        parameters.push(parameter(
+        parameters.push(Parameter::new(
             format!("{} filter_clocks", axis.name),
-            axis.filter_clocks.to_string(),
+            axis.filter_clocks,
             "longest pulse of the command that is ignored",
         ));
-        parameters.push(parameter(
+        parameters.push(Parameter::new(
             format!("{} unshaped_clocks", axis.name),
-            config.unshaped_clocks(axis).to_string(),
+            config.unshaped_clocks(axis),
             "from an edge of the command to its step, at an even speed and without shaping",
         ));
-        parameters.push(parameter(
+        parameters.push(Parameter::new(
             format!("{} longest_delay", axis.name),
-            axis.shaper.table().longest_delay_samples().to_string(),
+            axis.shaper.table().longest_delay_samples(),
             "ticks that the shaper takes longer to come to rest",
         ));
     }

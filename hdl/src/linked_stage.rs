@@ -9,7 +9,6 @@ use crate::{component, spi_bridge, uart_bridge};
 use posicast_blocks::component::Component;
 use posicast_blocks::inline_shaper::INLINE_SHAPER;
 use posicast_blocks::linked_stage::{BridgeConfig, ports};
-use posicast_blocks::{Direction, Port};
 
 /// Width of the bridge's addresses.
 const ADDRESS_BITS: u32 = 16;
@@ -63,11 +62,6 @@ fn what(component: &Component) -> &'static str {
 }
 
 fn header(name: &str, what: &str, config: &BridgeConfig) -> String {
-    let parameter = |name: &str, value: String, meaning: &str| Parameter {
-        name: name.to_owned(),
-        value,
-        meaning: meaning.to_owned(),
-    };
     let about = match config {
         BridgeConfig::Uart(_) => format!(
             "The {what} with its serial line: a host reads and writes the registers through uart_rx and uart_tx.\n\
@@ -83,28 +77,16 @@ fn header(name: &str, what: &str, config: &BridgeConfig) -> String {
         about,
         ports: Vec::new(),
         parameters: vec![
-            parameter(speed, value.to_string(), meaning),
-            parameter(
-                "address_limit",
-                config.address_limit().to_string(),
-                "word addresses below it exist",
-            ),
+            Parameter::new(speed, value, meaning),
+            Parameter::new("address_limit", config.address_limit(), "word addresses below it exist"),
         ],
     };
     print::data_header(name, &header, "machine file")
 }
 
 fn body(stage: &Component, config: &BridgeConfig, stage_name: &str, bridge_name: &str) -> String {
-    let bits = |width, value: u64| Type { width, signed: false }.literal(value);
-    let mut list = vec![("input  wire", bit(), "clk".to_owned())];
-    list.extend(ports(stage, config).iter().map(|port| {
-        let keyword = match port.direction {
-            Direction::Input => "input  wire",
-            Direction::Output => "output wire",
-        };
-        (keyword, of_port(port), port.name.clone())
-    }));
-    let list = print::port_list(&list);
+    let bits = |width, value: u64| Type::bits(width).literal(value);
+    let list = print::wire_port_list(true, &ports(stage, config), &[]);
     let address_bits = stage.map().address_bits();
     let pin = |port: &str, net: &str| (port.to_owned(), net.to_owned());
     let mut lines = Lines::default();
@@ -158,18 +140,4 @@ fn body(stage: &Component, config: &BridgeConfig, stage_name: &str, bridge_name:
         ));
     });
     lines.text
-}
-
-fn bit() -> Type {
-    Type {
-        width: 1,
-        signed: false,
-    }
-}
-
-fn of_port(port: &Port) -> Type {
-    Type {
-        width: port.width,
-        signed: port.signed,
-    }
 }

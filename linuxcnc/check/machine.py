@@ -79,6 +79,11 @@ def pin(name, value=None):
     return subprocess.run(["halcmd", *words], check=True, capture_output=True, text=True).stdout.strip()
 
 
+def shapers(on):
+    for axis in (0, 1):
+        pin(f"posicast.{axis}.unshaped", int(not on))
+
+
 def mode(wanted):
     command.mode(wanted)
     command.wait_complete(PATIENCE_S)
@@ -177,14 +182,18 @@ def emergency_stop(stage):
     check(True, "emergency stop: the machine goes on again")
 
 
+def switched_off(stage):
+    until(lambda: status.task_state != linuxcnc.STATE_ON, "LinuxCNC switches off")
+    until(lambda: not any(axis["outputs_on"] for axis in stage("state")["axes"]), "the outputs go off")
+
+
 def encoder_fault(stage):
     # On that side of the index where homing begins: it is at 0.
     move("G0 X-1 Y-1")
     move("G1 F600 X-6", wait=False)
     until(lambda: status.current_vel > 5, "the move begins")
     stage("stick x")
-    until(lambda: status.task_state != linuxcnc.STATE_ON, "LinuxCNC switches off")
-    until(lambda: not any(axis["outputs_on"] for axis in stage("state")["axes"]), "the outputs go off")
+    switched_off(stage)
     off(stage, FOLLOWING_ERROR | ENCODER, "encoder fault")
     shown("posicast: axis x", "encoder fault")
     stage("mend x")
@@ -200,8 +209,7 @@ def stall(stage):
     move("G1 F3000 X10", wait=False)
     until(lambda: status.current_vel > 5, "the move begins")
     stage("jam x")
-    until(lambda: status.task_state != linuxcnc.STATE_ON, "LinuxCNC switches off")
-    until(lambda: not any(axis["outputs_on"] for axis in stage("state")["axes"]), "the outputs go off")
+    switched_off(stage)
     off(stage, DEVIATION, "stall")
     shown("posicast: axis x: deviation", "stall")
     stage("free x")
@@ -265,11 +273,9 @@ def program_unshaped(stage, shaped):
 
 
 def machine_with_steps(stage, shaped):
-    for axis in (0, 1):
-        pin(f"posicast.{axis}.unshaped", 1)
+    shapers(False)
     program_unshaped(stage, shaped)
-    for axis in (0, 1):
-        pin(f"posicast.{axis}.unshaped", 0)
+    shapers(True)
     said.clear()
     emergency_stop(stage)
     stall(stage)
@@ -279,15 +285,13 @@ def machine_with_steps(stage, shaped):
 def machine_with_encoders(stage, shaped, folder):
     print("figure accesses of the bus per servo period, two axes:", int(pin("posicast.accesses")), flush=True)
     lags = {"shaped": lag()}
-    for axis in (0, 1):
-        pin(f"posicast.{axis}.unshaped", 1)
+    shapers(False)
     lags["unshaped"] = lag()
     print("figure lag from LinuxCNC's command to the encoder, s:", json.dumps(lags), flush=True)
     program_unshaped(stage, shaped)
     move("G1 F6000 X40", wait=False)
     time.sleep(0.1)
-    for axis in (0, 1):
-        pin(f"posicast.{axis}.unshaped", 0)
+    shapers(True)
     until(idle, "a move during which the tables change ends")
     check(status.task_state == linuxcnc.STATE_ON, "tables change while the axes move")
     move("G0 X0 Y0")

@@ -143,10 +143,7 @@ pub(super) fn trace<'m>(
         .transpose()?;
     let request = TraceRequest {
         axis,
-        signals: match args.signals.as_slice() {
-            [] => names.iter().map(|name| (*name).to_owned()).collect(),
-            signals => signals.to_vec(),
-        },
+        signals: signals(args, names),
         every_ticks: args.every.unwrap_or(if shake.is_some() && on_scale { 2 } else { 1 }),
         shake,
     };
@@ -178,6 +175,14 @@ fn traced(machine: &Machine, args: &TraceArgs) -> Result<usize, Failure> {
     Ok(axis)
 }
 
+/// The signals that the user named; without any, these.
+fn signals(args: &TraceArgs, usual: &[&str]) -> Vec<String> {
+    match args.signals.as_slice() {
+        [] => usual.iter().map(|name| (*name).to_owned()).collect(),
+        named => named.to_vec(),
+    }
+}
+
 /// Records positions of an axis of an inline shaper.
 pub(super) fn trace_inline<'m>(
     machine: &'m Machine,
@@ -193,13 +198,9 @@ pub(super) fn trace_inline<'m>(
         ))
         .with_help("leave out --shake, and let the controller move the axis while it is recorded"));
     }
-    let names = ["input_position", "output_position"];
     let request = TraceRequest {
         axis,
-        signals: match args.signals.as_slice() {
-            [] => names.map(str::to_owned).to_vec(),
-            signals => signals.to_vec(),
-        },
+        signals: signals(args, &["input_position", "output_position"]),
         every_ticks: args.every.unwrap_or(1),
         shake: None,
     };

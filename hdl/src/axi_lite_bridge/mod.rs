@@ -32,11 +32,6 @@ pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
 /// # Errors
 /// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
-    let parameter = |name: &str, value: u32, meaning: &str| Parameter {
-        name: name.to_owned(),
-        value: value.to_string(),
-        meaning: meaning.to_owned(),
-    };
     let options = EmitOptions {
         top: "axi_lite_bridge".to_owned(),
         prefix: prefix.to_owned(),
@@ -45,12 +40,12 @@ pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
                 .to_owned(),
             ports: port_notes(PORTS),
             parameters: vec![
-                parameter(
+                Parameter::new(
                     "read_clocks",
                     READ_CLOCKS,
                     "from the address to its answer, where nothing waits",
                 ),
-                parameter(
+                Parameter::new(
                     "write_clocks",
                     WRITE_CLOCKS,
                     "from address and data to their answer, likewise",

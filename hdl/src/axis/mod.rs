@@ -41,11 +41,6 @@ pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
 /// # Errors
 /// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
-    let parameter = |name: &str, value: u32, meaning: &str| Parameter {
-        name: name.to_owned(),
-        value: value.to_string(),
-        meaning: meaning.to_owned(),
-    };
     let options = EmitOptions {
         top: "axis".to_owned(),
         prefix: prefix.to_owned(),
@@ -55,19 +50,19 @@ pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
                 .to_owned(),
             ports: port_notes(PORTS),
             parameters: vec![
-                parameter(
+                Parameter::new(
                     "line_clocks",
                     LINE_CLOCKS,
                     "from a line to the state, plus filter_clocks",
                 ),
-                parameter(
+                Parameter::new(
                     "watch_clocks",
                     WATCH_CLOCKS,
                     "from a tick to the state, for the checks at ticks",
                 ),
-                parameter(
+                Parameter::new(
                     "clear_clocks",
-                    CLEAR_CLOCKS.into(),
+                    CLEAR_CLOCKS,
                     "from clear_faults until causes that are over are forgotten",
                 ),
             ],

@@ -87,11 +87,6 @@ pub fn emit(config: &CascadeConfig, prefix: &str) -> Result<Vec<Module>, EmitErr
 }
 
 fn header(config: &CascadeConfig) -> Header {
-    let parameter = |name: &str, value: u32, meaning: &str| Parameter {
-        name: name.to_owned(),
-        value: value.to_string(),
-        meaning: meaning.to_owned(),
-    };
     let stages = config.stages();
     Header {
         about: "Cascade of half sums: y_k[n] = y_(k-1)[n] + y_(k-1)[n - d_k], y = (y_N + 2^(N-1)) >> N\n\
@@ -99,10 +94,10 @@ fn header(config: &CascadeConfig) -> Header {
             .to_owned(),
         ports: port_notes(PORTS),
         parameters: vec![
-            parameter("word_bits", config.word_bits(), "x and y, two's complement"),
-            parameter("stages", stages, "N; their delays stand in the ROM"),
-            parameter("ring_samples", 1 << config.ring_address_bits(), "delays up to this - 2"),
-            parameter("pass_clocks", pass_clocks(stages), "from strobe to valid"),
+            Parameter::new("word_bits", config.word_bits(), "x and y, two's complement"),
+            Parameter::new("stages", stages, "N; their delays stand in the ROM"),
+            Parameter::new("ring_samples", 1 << config.ring_address_bits(), "delays up to this - 2"),
+            Parameter::new("pass_clocks", pass_clocks(stages), "from strobe to valid"),
         ],
     }
 }

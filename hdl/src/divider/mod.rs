@@ -35,11 +35,6 @@ fn base_name(config: &DividerConfig) -> String {
 /// # Errors
 /// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(config: &DividerConfig, prefix: &str) -> Result<Vec<Module>, EmitError> {
-    let parameter = |name: &str, value: u32, meaning: &str| Parameter {
-        name: name.to_owned(),
-        value: value.to_string(),
-        meaning: meaning.to_owned(),
-    };
     let options = EmitOptions {
         top: base_name(config),
         prefix: prefix.to_owned(),
@@ -49,8 +44,8 @@ pub fn emit(config: &DividerConfig, prefix: &str) -> Result<Vec<Module>, EmitErr
                 .to_owned(),
             ports: port_notes(PORTS),
             parameters: vec![
-                parameter("tick_clocks", config.tick_clocks(), "clocks per tick"),
-                parameter("division_clocks", DIVISION_CLOCKS, "from start to done"),
+                Parameter::new("tick_clocks", config.tick_clocks(), "clocks per tick"),
+                Parameter::new("division_clocks", DIVISION_CLOCKS, "from start to done"),
             ],
         },
     };

@@ -4,7 +4,7 @@
 use super::error::{EmitCause, EmitError};
 use super::names::{self, Taken};
 use super::print::{self, Lines};
-use super::types::{BIT, Type};
+use super::types::Type;
 use super::{Header, Module};
 use posicast_blocks::{Direction, Port};
 
@@ -97,13 +97,6 @@ fn lifted(instance: &ModuleInstance<'_>, port: &Port) -> String {
     format!("{}_{}", instance.name, port.name)
 }
 
-fn port_type(port: &Port) -> Type {
-    Type {
-        width: port.width,
-        signed: port.signed,
-    }
-}
-
 /// The input `name`, which must have the same type in all instances that have it.
 fn shared_input(name: &str, instances: &[ModuleInstance<'_>]) -> Result<Port, EmitCause> {
     names::check_name(name)?;
@@ -116,12 +109,12 @@ fn shared_input(name: &str, instances: &[ModuleInstance<'_>]) -> Result<Port, Em
             return Err(EmitCause::SharedOutput(name.to_owned()));
         }
         match shared {
-            Some(first) if port_type(first) != port_type(port) => {
+            Some(first) if Type::of(first) != Type::of(port) => {
                 return Err(EmitCause::SharedType {
                     name: name.to_owned(),
-                    first: port_type(first),
+                    first: Type::of(first),
                     instance: instance.name.to_owned(),
-                    second: port_type(port),
+                    second: Type::of(port),
                 });
             }
             _ => shared = Some(port),
@@ -131,16 +124,7 @@ fn shared_input(name: &str, instances: &[ModuleInstance<'_>]) -> Result<Port, Em
 }
 
 fn body(ports: &[Port], clocked: bool, shared_inputs: &[&str], instances: &[ModuleInstance<'_>]) -> String {
-    let clock = clocked.then(|| ("input  wire", BIT, "clk".to_owned()));
-    let listed = ports.iter().map(|port| {
-        let keyword = if port.direction == Direction::Input {
-            "input  wire"
-        } else {
-            "output wire"
-        };
-        (keyword, port_type(port), port.name.clone())
-    });
-    let list = print::port_list(&clock.into_iter().chain(listed).collect::<Vec<_>>());
+    let list = print::wire_port_list(clocked, ports, &[]);
     let mut lines = Lines::default();
     lines.nest(list.trim_end(), "endmodule", |lines| {
         for (index, instance) in instances.iter().enumerate() {

@@ -3,10 +3,10 @@
 use super::error::{EmitCause, EmitError};
 use super::names::{self, Taken};
 use super::print::{self, Lines};
-use super::types::{BIT, Type};
+use super::types::Type;
 use super::{Header, Module};
 use posicast_blocks::composition::{Composition, Connection};
-use posicast_blocks::{Direction, Port, PortNote};
+use posicast_blocks::{Port, PortNote};
 
 /// Writes the module `top`: one instance per part of `composition`, of the module with the same index in `modules`.
 ///
@@ -106,23 +106,8 @@ fn instance_name(part: &str) -> String {
     format!("u_{part}")
 }
 
-fn port_type(port: &Port) -> Type {
-    Type {
-        width: port.width,
-        signed: port.signed,
-    }
-}
-
 fn body(composition: &Composition, clocked: bool, modules: &[&Module], notes: &[PortNote]) -> String {
-    let clock = clocked.then(|| ("input  wire", BIT, "clk".to_owned()));
-    let ports = composition.ports().iter().map(|port| {
-        let keyword = match port.direction {
-            Direction::Input => "input  wire",
-            Direction::Output => "output wire",
-        };
-        (keyword, port_type(port), port.name.clone())
-    });
-    let list = print::noted_port_list(&clock.into_iter().chain(ports).collect::<Vec<_>>(), notes);
+    let list = print::wire_port_list(clocked, composition.ports(), notes);
     let inside = || {
         composition
             .nets()
@@ -132,7 +117,7 @@ fn body(composition: &Composition, clocked: bool, modules: &[&Module], notes: &[
     let mut lines = Lines::default();
     lines.nest(list.trim_end(), "endmodule", |lines| {
         let wires: Vec<_> = inside()
-            .map(|net| ("wire", port_type(&net.port), net.port.name.clone()))
+            .map(|net| ("wire", Type::of(&net.port), net.port.name.clone()))
             .collect();
         print::declarations(lines, &wires);
         for (index, ((part, connections), module)) in composition
@@ -149,7 +134,7 @@ fn body(composition: &Composition, clocked: bool, modules: &[&Module], notes: &[
             let pins = part.ports().iter().zip(connections).map(|(port, connection)| {
                 let net = match connection {
                     Connection::Net(net) => composition.nets()[*net].port.name.clone(),
-                    Connection::Tied(value) => port_type(port).literal(*value),
+                    Connection::Tied(value) => Type::of(port).literal(*value),
                 };
                 (port.name.clone(), net)
             });

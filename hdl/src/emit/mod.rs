@@ -139,6 +139,17 @@ pub struct Parameter {
     pub meaning: String,
 }
 
+impl Parameter {
+    /// A row of the table.
+    pub(crate) fn new(name: impl Into<String>, value: impl ToString, meaning: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            value: value.to_string(),
+            meaning: meaning.into(),
+        }
+    }
+}
+
 /// Writes `block` as Verilog: sub-modules first, the top last.
 ///
 /// # Errors

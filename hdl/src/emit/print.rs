@@ -8,7 +8,7 @@ use super::scope::{NetId, Scope};
 use super::types::Type;
 use super::wrap::wrapped;
 use super::{Header, Parameter, head};
-use posicast_blocks::PortNote;
+use posicast_blocks::{Direction, Port, PortNote};
 use std::fmt::Write;
 
 /// Source of the modules that are written from kernels.
@@ -135,12 +135,20 @@ pub(super) fn ports(node: &Node, is_reg: &dyn Fn(&Signal) -> bool, notes: &[Port
     noted_port_list(&ports.collect::<Vec<_>>(), notes)
 }
 
-/// `(…);` with one port per line: keyword, type, name.
-pub(crate) fn port_list(ports: &[(&str, Type, String)]) -> String {
-    noted_port_list(ports, &[])
+/// The port list of a module that connects others: `clk` first if it is clocked, and no output is a variable.
+pub(crate) fn wire_port_list(clocked: bool, ports: &[Port], notes: &[PortNote]) -> String {
+    let clock = clocked.then(|| ("input  wire", Type::bits(1), "clk".to_owned()));
+    let ports = ports.iter().map(|port| {
+        let keyword = match port.direction {
+            Direction::Input => "input  wire",
+            Direction::Output => "output wire",
+        };
+        (keyword, Type::of(port), port.name.clone())
+    });
+    noted_port_list(&clock.into_iter().chain(ports).collect::<Vec<_>>(), notes)
 }
 
-/// The same, with the purposes of the ports as comments behind them.
+/// `(…);` with one port per line: keyword, type, name, and the port's purpose as a comment.
 pub(crate) fn noted_port_list(ports: &[(&str, Type, String)], notes: &[PortNote]) -> String {
     if ports.is_empty() {
         return "();\n".to_owned();

@@ -1,5 +1,6 @@
 //! Width and sign of a signal, and sized literals that stand for exactly one bit pattern.
 
+use posicast_blocks::Port;
 use std::fmt;
 
 /// Type of a signal or expression: 1 to 64 bits, unsigned or two's complement.
@@ -24,8 +25,16 @@ impl fmt::Display for Type {
 }
 
 impl Type {
-    pub(super) fn bits(width: u32) -> Self {
+    pub(crate) fn bits(width: u32) -> Self {
         Self { width, signed: false }
+    }
+
+    /// The type of a port.
+    pub(crate) fn of(port: &Port) -> Self {
+        Self {
+            width: port.width,
+            signed: port.signed,
+        }
     }
 
     /// A mask of all bits of the type.

@@ -26,11 +26,6 @@ pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
 /// # Errors
 /// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
-    let parameter = |name: &str, value: u32, meaning: &str| Parameter {
-        name: name.to_owned(),
-        value: value.to_string(),
-        meaning: meaning.to_owned(),
-    };
     let options = EmitOptions {
         top: "encoder_generator".to_owned(),
         prefix: prefix.to_owned(),
@@ -40,12 +35,12 @@ pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
                 .to_owned(),
             ports: port_notes(PORTS),
             parameters: vec![
-                parameter(
+                Parameter::new(
                     "rate_fraction",
                     RATE_FRACTION,
                     "fraction bits of rate, in counts per clock",
                 ),
-                parameter("latency_clocks", LATENCY_CLOCKS, "from a pin to its output"),
+                Parameter::new("latency_clocks", LATENCY_CLOCKS, "from a pin to its output"),
             ],
         },
     };

@@ -34,11 +34,6 @@ pub fn name(prefix: &str) -> String {
 /// # Errors
 /// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(config: &ErrorTableConfig, prefix: &str) -> Result<Vec<Module>, EmitError> {
-    let parameter = |name: &str, value: String, meaning: &str| Parameter {
-        name: name.to_owned(),
-        value,
-        meaning: meaning.to_owned(),
-    };
     let format = config.format();
     let options = EmitOptions {
         top: "error_table".to_owned(),
@@ -48,21 +43,17 @@ pub fn emit(config: &ErrorTableConfig, prefix: &str) -> Result<Vec<Module>, Emit
                     from the position reference, times a weight that goes up and down slowly."
                 .to_owned(),
             parameters: vec![
-                parameter("entries", config.entries().len().to_string(), "per bank"),
-                parameter(
-                    "first_counts",
-                    format.first_counts.to_string(),
-                    "user's position of the first",
-                ),
-                parameter(
+                Parameter::new("entries", config.entries().len(), "per bank"),
+                Parameter::new("first_counts", format.first_counts, "user's position of the first"),
+                Parameter::new(
                     "spacing_counts",
                     (1u32 << format.spacing_bits).to_string(),
                     "from entry to entry",
                 ),
-                parameter("most_step", format.most_step().to_string(), "between neighbours"),
-                parameter(
+                Parameter::new("most_step", format.most_step(), "between neighbours"),
+                Parameter::new(
                     "latency_clocks",
-                    config.latency_clocks().to_string(),
+                    config.latency_clocks(),
                     "from valid to compensated_valid",
                 ),
             ],

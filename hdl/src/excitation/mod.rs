@@ -27,11 +27,6 @@ pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
 /// # Errors
 /// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
-    let parameter = |name: &str, value: u32, meaning: &str| Parameter {
-        name: name.to_owned(),
-        value: value.to_string(),
-        meaning: meaning.to_owned(),
-    };
     let options = EmitOptions {
         top: "excitation".to_owned(),
         prefix: prefix.to_owned(),
@@ -41,8 +36,8 @@ pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
                 .to_owned(),
             ports: port_notes(PORTS),
             parameters: vec![
-                parameter("latency_clocks", LATENCY_CLOCKS, "from valid to reference_valid"),
-                parameter(
+                Parameter::new("latency_clocks", LATENCY_CLOCKS, "from valid to reference_valid"),
+                Parameter::new(
                     "tick_clocks",
                     TICK_CLOCKS,
                     "from a valid until the next is ready, at most",

@@ -48,11 +48,6 @@ fn base_name(config: &PwmConfig) -> String {
 /// # Errors
 /// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(config: &PwmConfig, prefix: &str) -> Result<Vec<Module>, EmitError> {
-    let parameter = |name: &str, value: String, meaning: &str| Parameter {
-        name: name.to_owned(),
-        value,
-        meaning: meaning.to_owned(),
-    };
     let off = config.active_low();
     let low = [
         (off.a_high, "a_high"),
@@ -76,18 +71,14 @@ pub fn emit(config: &PwmConfig, prefix: &str) -> Result<Vec<Module>, EmitError> 
                 .to_owned(),
             ports: port_notes(PORTS),
             parameters: vec![
-                parameter("active low pins", low, "on at low, off at high"),
-                parameter(
-                    "dead time floor",
-                    config.dead_time_floor_clocks().to_string(),
-                    "clocks, at least 1",
-                ),
-                parameter(
+                Parameter::new("active low pins", low, "on at low, off at high"),
+                Parameter::new("dead time floor", config.dead_time_floor_clocks(), "clocks, at least 1"),
+                Parameter::new(
                     "minimum pulse floor",
-                    config.minimum_pulse_floor_clocks().to_string(),
+                    config.minimum_pulse_floor_clocks(),
                     "clocks, at least 1",
                 ),
-                parameter(
+                Parameter::new(
                     "first start",
                     if config.is_on_time_base() {
                         "in phase"

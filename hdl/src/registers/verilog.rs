@@ -19,11 +19,7 @@ pub(super) fn body(map: &RegisterMap) -> String {
             Direction::Output if data.len() > 1 && port.name == "avs_readdata" => "output wire",
             Direction::Output => "output reg ",
         };
-        let ty = Type {
-            width: port.width,
-            signed: port.signed,
-        };
-        (keyword, ty, port.name.clone())
+        (keyword, Type::of(port), port.name.clone())
     });
     let list = print::noted_port_list(&[clock].into_iter().chain(ports).collect::<Vec<_>>(), &notes(map));
     let mut lines = Lines::default();

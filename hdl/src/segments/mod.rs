@@ -29,11 +29,6 @@ pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
 /// # Errors
 /// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
-    let parameter = |name: &str, value: u32, meaning: &str| Parameter {
-        name: name.to_owned(),
-        value: value.to_string(),
-        meaning: meaning.to_owned(),
-    };
     let options = EmitOptions {
         top: "segments".to_owned(),
         prefix: prefix.to_owned(),
@@ -43,9 +38,9 @@ pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
                 .to_owned(),
             ports: port_notes(PORTS),
             parameters: vec![
-                parameter("entries", u32::from(ENTRIES_MAX), "including the one being played"),
-                parameter("latency_clocks", LATENCY_CLOCKS, "from tick to valid"),
-                parameter("tick_clocks", TICK_CLOCKS, "from a tick until the next one is taken"),
+                Parameter::new("entries", u32::from(ENTRIES_MAX), "including the one being played"),
+                Parameter::new("latency_clocks", LATENCY_CLOCKS, "from tick to valid"),
+                Parameter::new("tick_clocks", TICK_CLOCKS, "from a tick until the next one is taken"),
             ],
         },
     };

@@ -177,11 +177,6 @@ pub fn emit(config: &ShaperConfig, prefix: &str) -> Result<Vec<Module>, EmitErro
 
 fn header(config: &ShaperConfig) -> Header {
     let taps = config.table().taps().len() as u32;
-    let parameter = |name: &str, value: String, meaning: &str| Parameter {
-        name: name.to_owned(),
-        value,
-        meaning: meaning.to_owned(),
-    };
     let (words, fraction) = (config.word_bits(), config.coefficient_fraction());
     let mut about = "Input shaper: y[n] = saturate( (sum of c_i * x[n - d_i] + 2^(F-1)) >> F )\n\
                      strobe: x is a sample; start: begin anew, all samples before are x. One tap per clock."
@@ -193,34 +188,26 @@ fn header(config: &ShaperConfig) -> Header {
         );
         let modulo = u32::from(motion.modulo).to_string();
         of_motion = vec![
-            parameter(
-                "channels",
-                motion.channels.to_string(),
-                "share the table, outputs in one clock",
-            ),
-            parameter("modulo", modulo, "1: position wraps, no saturation"),
-            parameter(
+            Parameter::new("channels", motion.channels, "share the table, outputs in one clock"),
+            Parameter::new("modulo", modulo, "1: position wraps, no saturation"),
+            Parameter::new(
                 "longest_pass_clocks",
-                config.pass_clocks(config.most_products()).to_string(),
+                config.pass_clocks(config.most_products()),
                 "in a handover",
             ),
         ];
     }
     let parameters = vec![
-        parameter("word_bits", words.to_string(), "x and y, two's complement"),
-        parameter(
-            "coefficient_fraction",
-            fraction.to_string(),
-            "F; coefficients have 18 bits",
-        ),
-        parameter(
+        Parameter::new("word_bits", words, "x and y, two's complement"),
+        Parameter::new("coefficient_fraction", fraction, "F; coefficients have 18 bits"),
+        Parameter::new(
             "ring_samples",
             (1u32 << config.ring_address_bits()).to_string(),
             "delays up to this - 2",
         ),
-        parameter("most_taps", config.most_taps().to_string(), "per bank"),
-        parameter("machine_taps", taps.to_string(), "bank 0, ROM"),
-        parameter(
+        Parameter::new("most_taps", config.most_taps(), "per bank"),
+        Parameter::new("machine_taps", taps, "bank 0, ROM"),
+        Parameter::new(
             "pass_clocks",
             config.pass_clocks(taps * config.channels() as u32).to_string(),
             "from strobe to valid in bank 0",

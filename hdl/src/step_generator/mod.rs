@@ -100,11 +100,6 @@ pub fn emit(config: &StepGeneratorConfig, prefix: &str) -> Result<Vec<Module>, E
 }
 
 fn parameters(config: &StepGeneratorConfig) -> Vec<Parameter> {
-    let parameter = |name: &str, value: String, meaning: &str| Parameter {
-        name: name.to_owned(),
-        value,
-        meaning: meaning.to_owned(),
-    };
     let times = config.times();
     let low = config.lines_active_low();
     let low = match (low.a, low.b) {
@@ -114,30 +109,26 @@ fn parameters(config: &StepGeneratorConfig) -> Vec<Parameter> {
         (true, true) => "a b",
     };
     vec![
-        parameter("tick_clocks", config.tick_clocks().to_string(), "from tick to tick"),
-        parameter("fraction_bits", config.fraction_bits().to_string(), "of position"),
-        parameter("mode", config.mode().name().to_owned(), "what the lines show"),
-        parameter("active low lines", low.to_owned(), "off at high"),
-        parameter("pulse_clocks", times.pulse_clocks.to_string(), "at least"),
-        parameter(
-            "space_clocks",
-            times.space_clocks.to_string(),
-            "at least, from pulse to pulse",
-        ),
-        parameter(
+        Parameter::new("tick_clocks", config.tick_clocks(), "from tick to tick"),
+        Parameter::new("fraction_bits", config.fraction_bits(), "of position"),
+        Parameter::new("mode", config.mode().name(), "what the lines show"),
+        Parameter::new("active low lines", low, "off at high"),
+        Parameter::new("pulse_clocks", times.pulse_clocks, "at least"),
+        Parameter::new("space_clocks", times.space_clocks, "at least, from pulse to pulse"),
+        Parameter::new(
             "direction_setup_clocks",
-            times.direction_setup_clocks.to_string(),
+            times.direction_setup_clocks,
             "at least, from a change of direction to the next pulse",
         ),
-        parameter(
+        Parameter::new(
             "direction_hold_clocks",
-            times.direction_hold_clocks.to_string(),
+            times.direction_hold_clocks,
             "at least, from the end of a pulse to a change of direction",
         ),
-        parameter("owed_limit", config.owed_limit().to_string(), "steps; more are a cause"),
-        parameter(
+        Parameter::new("owed_limit", config.owed_limit(), "steps; more are a cause"),
+        Parameter::new(
             "latency_clocks",
-            LATENCY_CLOCKS.to_string(),
+            LATENCY_CLOCKS,
             "from the demand of a step to its edge",
         ),
     ]

@@ -77,11 +77,6 @@ fn base_name(config: &TraceConfig) -> String {
 /// # Errors
 /// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(config: &TraceConfig, prefix: &str) -> Result<Vec<Module>, EmitError> {
-    let parameter = |name: &str, value: u32, meaning: &str| Parameter {
-        name: name.to_owned(),
-        value: value.to_string(),
-        meaning: meaning.to_owned(),
-    };
     let options = EmitOptions {
         top: base_name(config),
         prefix: prefix.to_owned(),
@@ -91,8 +86,8 @@ pub fn emit(config: &TraceConfig, prefix: &str) -> Result<Vec<Module>, EmitError
                 .to_owned(),
             ports: port_notes(PORTS),
             parameters: vec![
-                parameter("samples", config.samples(), "words; a row has 1, 2 or 4"),
-                parameter(
+                Parameter::new("samples", config.samples(), "words; a row has 1, 2 or 4"),
+                Parameter::new(
                     "row_clocks",
                     row_clocks(FOUR_SIGNALS),
                     "from a strobe to the next, at most",

@@ -16,18 +16,15 @@
 //! | `irq`, all pins | the component's; not its bus |
 
 use super::axi_lite_bridge::{self, AxiLiteBridge};
+use super::bridged::{self, Bridged};
 use super::component::Component;
 use super::composition::Composed;
 use super::registers::RegisterMap;
 use super::wishbone_bridge::{self, WishboneBridge};
 use super::{ClockedBlock, Direction, Port, StepError};
 
-/// Prefix of the ports of the component's bus.
-const BUS_PREFIX: &str = "avs_";
 /// Prefix of the ports between bridge and component.
 pub const INNER_PREFIX: &str = "avm_";
-/// Ports of the component's bus, which are its inputs from 1 on.
-const BUS_INPUTS: usize = 5;
 
 /// A bus that a bridge leads to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -75,6 +72,13 @@ impl BridgedBus {
         }
     }
 
+    /// Number of outputs of the bridge to the bus, its first ones.
+    pub fn bus_outputs(self) -> usize {
+        let ports = self.bridge_ports();
+        let outputs = ports.iter().filter(|port| port.direction == Direction::Output);
+        outputs.count() - INNER_OUTPUTS
+    }
+
     /// The constant inputs of the bridge, with their values.
     pub fn constants(self) -> Vec<(&'static str, bool)> {
         match self {
@@ -104,15 +108,7 @@ impl BridgedBus {
 
 /// The ports of a component on a bus: inputs, then outputs.
 pub fn ports(component: &Component, bus: BridgedBus) -> Vec<Port> {
-    let of_component = component.composition().ports().iter();
-    let own = of_component.filter(|port| !port.name.starts_with(BUS_PREFIX));
-    let (reset, pins): (Vec<Port>, Vec<Port>) = own.cloned().partition(|port| port.name == "rst");
-    let all = reset
-        .into_iter()
-        .chain(bus.ports(component.map().address_bits()))
-        .chain(pins);
-    let (inputs, outputs): (Vec<_>, Vec<_>) = all.partition(|port| port.direction == Direction::Input);
-    inputs.into_iter().chain(outputs).collect()
+    bridged::ports(component, bus.ports(component.map().address_bits()))
 }
 
 /// The words that have a register: pairs of the first and the last offset, in ascending order, not adjacent.
@@ -133,15 +129,6 @@ enum Bridge {
     Wishbone(WishboneBridge, bool),
 }
 
-/// What a bridge asks the component for in a clock.
-struct Access {
-    address: u16,
-    read: bool,
-    write: bool,
-    bytes: u8,
-    word: u32,
-}
-
 impl Bridge {
     fn new(bus: BridgedBus) -> Self {
         match bus {
@@ -150,31 +137,11 @@ impl Bridge {
         }
     }
 
-    /// The access, and the outputs to the bus.
-    fn shown(&self) -> (Access, Vec<u64>) {
+    /// The outputs in this clock: those of the bus, then [`INNER_OUTPUTS`].
+    fn shown(&self) -> Vec<u64> {
         match self {
-            Self::AxiLite(bridge) => {
-                let shown = bridge.outputs();
-                let access = Access {
-                    address: shown.avm_address,
-                    read: shown.avm_read,
-                    write: shown.avm_write,
-                    bytes: shown.avm_byteenable,
-                    word: shown.avm_writedata,
-                };
-                (access, of_bus(&shown.to_raw()))
-            }
-            Self::Wishbone(bridge, _) => {
-                let shown = bridge.outputs();
-                let access = Access {
-                    address: shown.avm_address,
-                    read: shown.avm_read,
-                    write: shown.avm_write,
-                    bytes: shown.avm_byteenable,
-                    word: shown.avm_writedata,
-                };
-                (access, of_bus(&shown.to_raw()))
-            }
+            Self::AxiLite(bridge) => bridge.outputs().to_raw().to_vec(),
+            Self::Wishbone(bridge, _) => bridge.outputs().to_raw().to_vec(),
         }
     }
 
@@ -200,43 +167,29 @@ fn row<const N: usize>(parts: [&[u64]; 3]) -> [u64; N] {
     std::array::from_fn(|_| values.next().unwrap_or(0))
 }
 
-/// Outputs of a bridge to the component, the last ones.
+/// The last outputs of a bridge: address, read, write, byteenable and writedata, as the component's bus has them.
 const INNER_OUTPUTS: usize = 5;
-
-fn of_bus(outputs: &[u64]) -> Vec<u64> {
-    outputs[..outputs.len() - INNER_OUTPUTS].to_vec()
-}
 
 /// The cycle-accurate model.
 pub struct BusComponent {
     bridge: Bridge,
     /// Number of inputs of the bus.
     bus_inputs: usize,
-    component: Composed,
+    component: Bridged,
     ports: Vec<Port>,
     mapped: Vec<(u32, u32)>,
-    inputs: Vec<u64>,
-    outputs: Vec<u64>,
-    /// Place of `avs_readdata` among the component's outputs.
-    read_data: usize,
 }
 
 impl BusComponent {
     /// A component after reset. `seed` determines the arbitrary contents of memories.
     pub fn new(component: &Component, bus: BridgedBus, seed: u64) -> Self {
-        let of_component = component.composition().ports();
-        let count = |wanted| of_component.iter().filter(|port| port.direction == wanted).count();
-        let mut outputs = of_component.iter().filter(|port| port.direction == Direction::Output);
         let of_bus = bus.ports(component.map().address_bits());
         Self {
             bridge: Bridge::new(bus),
             bus_inputs: of_bus.iter().filter(|port| port.direction == Direction::Input).count(),
+            component: Bridged::new(component, seed),
             ports: ports(component, bus),
             mapped: mapped(component.map()),
-            inputs: vec![0; count(Direction::Input)],
-            outputs: vec![0; count(Direction::Output)],
-            read_data: outputs.position(|port| port.name == "avs_readdata").unwrap_or(0),
-            component: component.model(seed),
         }
     }
 }
@@ -247,46 +200,29 @@ impl ClockedBlock for BusComponent {
     }
 
     fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
-        let wrong = || StepError(format!("{} inputs and {} outputs", inputs.len(), self.ports.len()));
+        let wrong = || StepError(format!("{} inputs and {} outputs", inputs.len(), outputs.len()));
         let [rst, rest @ ..] = inputs else {
             return Err(wrong());
         };
+        let rst = *rst & 1 != 0;
+        let shown = self.bridge.shown();
+        let (of_bus, access) = shown.split_last_chunk::<INNER_OUTPUTS>().ok_or_else(wrong)?;
         let (bus, pins) = rest.split_at_checked(self.bus_inputs).ok_or_else(wrong)?;
-        let (access, shown) = self.bridge.shown();
-        if pins.len() + 1 + BUS_INPUTS != self.inputs.len() || outputs.len() + 1 != self.outputs.len() + shown.len() {
+        if outputs.len() < of_bus.len() {
             return Err(wrong());
         }
-        let of_access = [
-            *rst & 1,
-            access.address.into(),
-            access.read.into(),
-            access.write.into(),
-            access.bytes.into(),
-            access.word.into(),
-        ];
-        self.inputs[..of_access.len()].copy_from_slice(&of_access);
-        self.inputs[of_access.len()..].copy_from_slice(pins);
-        self.component.step(&self.inputs, &mut self.outputs)?;
-        let address = u32::from(access.address);
-        let mapped = self
-            .mapped
-            .iter()
-            .any(|(first, last)| (*first..=*last).contains(&address));
-        let word = self.outputs[self.read_data] as u32;
-        self.bridge.step(*rst & 1 != 0, bus, word, mapped);
-        let (of_bus, of_pins) = outputs.split_at_mut(shown.len());
-        of_bus.copy_from_slice(&shown);
-        let own = self.outputs.iter().enumerate();
-        let own = own.filter(|(place, _)| *place != self.read_data);
-        of_pins
-            .iter_mut()
-            .zip(own)
-            .for_each(|(output, (_, value))| *output = *value);
+        let (to_bus, to_pins) = outputs.split_at_mut(of_bus.len());
+        let read_data = self.component.step(rst, *access, pins, to_pins)?;
+        to_bus.copy_from_slice(of_bus);
+        let address = access[0] as u32;
+        let mut mapped = self.mapped.iter();
+        let mapped = mapped.any(|(first, last)| (*first..=*last).contains(&address));
+        self.bridge.step(rst, bus, read_data, mapped);
         Ok(())
     }
 
     fn composed(&self) -> Option<&Composed> {
-        Some(&self.component)
+        Some(self.component.composed())
     }
 }
 

@@ -5,6 +5,7 @@
 
 pub mod axi_lite_bridge;
 pub mod axis;
+mod bridged;
 pub mod bus_component;
 pub mod cascade;
 pub mod component;

@@ -14,7 +14,6 @@ use posicast_hdl::emit::{EmitError, Module, shared_name};
 use crate::blocks::registry::{AreaRow, RegistryRow, one, small};
 use crate::blocks::{Bins, Block};
 use crate::formal::{INDUCTION, Task};
-use crate::lockstep::Clock;
 use crate::stimuli::Stimuli;
 
 /// The block's row in the registry.
@@ -81,15 +80,5 @@ impl Block for AxiLiteBridgeBlock {
 
     fn coverage(&self) -> Box<dyn Bins + '_> {
         Box::new(AxiLiteBridgeCoverage::default())
-    }
-}
-
-impl Bins for AxiLiteBridgeCoverage {
-    fn observe(&mut self, clock: &Clock<'_>) {
-        self.observe(clock);
-    }
-
-    fn counts(&self) -> Vec<(String, u64)> {
-        self.counts()
     }
 }

@@ -5,6 +5,7 @@ use posicast_blocks::axi_lite_bridge::{Inputs, Outputs};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
+use crate::blocks::Bins;
 use crate::lockstep::Clock;
 use crate::stimuli::table::pick;
 use crate::stimuli::{Stimuli, row};
@@ -104,9 +105,8 @@ const NAMES: [&str; 14] = [
     "resets",
 ];
 
-impl AxiLiteBridgeCoverage {
-    /// Adds a clock.
-    pub fn observe(&mut self, clock: &Clock<'_>) {
+impl Bins for AxiLiteBridgeCoverage {
+    fn observe(&mut self, clock: &Clock<'_>) {
         let (inputs, shown) = (
             Inputs::from_raw(&row(clock.inputs)),
             Outputs::from_raw(&row(clock.expected)),
@@ -141,8 +141,7 @@ impl AxiLiteBridgeCoverage {
         }
     }
 
-    /// Each event's name and count.
-    pub fn counts(&self) -> Vec<(String, u64)> {
+    fn counts(&self) -> Vec<(String, u64)> {
         NAMES.map(str::to_owned).into_iter().zip(self.counts).collect()
     }
 }

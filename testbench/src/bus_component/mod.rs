@@ -108,7 +108,7 @@ impl BusComponentBlock {
     fn shown(&self) -> Vec<Port> {
         let ports = ports(&self.component, self.bus).into_iter();
         let outputs = ports.filter(|port| port.direction == Direction::Output);
-        outputs.take(stimuli::bus_outputs(self.bus)).collect()
+        outputs.take(self.bus.bus_outputs()).collect()
     }
 
     /// The bridge alone, with the modules of the machine.

@@ -18,8 +18,6 @@ use crate::stimuli::{Stimuli, row};
 
 /// Accesses that may wait: the component's stimuli stand still while there are as many.
 const MOST_WAITING: usize = 4;
-/// Outputs of a bridge to the component.
-const INNER_OUTPUTS: usize = 5;
 
 /// An access to a word.
 #[derive(Debug, Clone, Copy, Default)]
@@ -47,13 +45,6 @@ impl Channel {
         self.offers |= begins && !self.waiting.is_empty();
         self.waiting.front().filter(|_| self.offers).copied()
     }
-}
-
-/// Number of outputs to the bus.
-pub(super) fn bus_outputs(bus: BridgedBus) -> usize {
-    let ports = bus.bridge_ports();
-    let outputs = ports.iter().filter(|port| port.direction == Direction::Output);
-    outputs.count() - INNER_OUTPUTS
 }
 
 /// The stimuli of a component, with its accesses on another bus. A word without a register is now and then accessed, too.
@@ -92,7 +83,7 @@ impl BusComponentRandom {
             own: vec![0; count(Direction::Input)],
             seen: vec![0; count(Direction::Output)],
             read_data: outputs.position(|port| port.name == "avs_readdata").unwrap_or(0),
-            outputs: bus_outputs(bus),
+            outputs: bus.bus_outputs(),
             unmapped: (0..component.map().words())
                 .filter(|word| mapped.iter().all(|(first, last)| !(first..=last).contains(&word)))
                 .map(u64::from)

@@ -14,7 +14,6 @@ use posicast_hdl::wishbone_bridge::{emit, simulate};
 use crate::blocks::registry::{AreaRow, RegistryRow, one, small};
 use crate::blocks::{Bins, Block};
 use crate::formal::{INDUCTION, Task};
-use crate::lockstep::Clock;
 use crate::stimuli::Stimuli;
 
 /// The block's row in the registry.
@@ -77,15 +76,5 @@ impl Block for WishboneBridgeBlock {
 
     fn coverage(&self) -> Box<dyn Bins + '_> {
         Box::new(WishboneBridgeCoverage::default())
-    }
-}
-
-impl Bins for WishboneBridgeCoverage {
-    fn observe(&mut self, clock: &Clock<'_>) {
-        self.observe(clock);
-    }
-
-    fn counts(&self) -> Vec<(String, u64)> {
-        self.counts()
     }
 }

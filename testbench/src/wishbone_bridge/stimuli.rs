@@ -5,6 +5,7 @@ use posicast_blocks::wishbone_bridge::{Inputs, Outputs};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
+use crate::blocks::Bins;
 use crate::lockstep::Clock;
 use crate::stimuli::table::pick;
 use crate::stimuli::{Stimuli, row};
@@ -94,9 +95,8 @@ const NAMES: [&str; 10] = [
     "resets",
 ];
 
-impl WishboneBridgeCoverage {
-    /// Adds a clock.
-    pub fn observe(&mut self, clock: &Clock<'_>) {
+impl Bins for WishboneBridgeCoverage {
+    fn observe(&mut self, clock: &Clock<'_>) {
         let (inputs, shown) = (
             Inputs::from_raw(&row(clock.inputs)),
             Outputs::from_raw(&row(clock.expected)),
@@ -121,8 +121,7 @@ impl WishboneBridgeCoverage {
         }
     }
 
-    /// Each event's name and count.
-    pub fn counts(&self) -> Vec<(String, u64)> {
+    fn counts(&self) -> Vec<(String, u64)> {
         NAMES.map(str::to_owned).into_iter().zip(self.counts).collect()
     }
 }
