@@ -53,11 +53,11 @@ impl Mutant {
         Self { number, ..self }
     }
 
-    /// Its line among those of unknown mutants, which may end with the clock that a search found.
+    /// Its line among those of unknown mutants, which may end with the clock that a search found. Numbers of lines are
+    /// not compared: a comment moves them, and Yosys's number of the cell tells cells of one kind apart.
     pub(super) fn line_among<'a>(&self, lines: &'a [String]) -> Option<&'a str> {
-        let own = self.to_string();
-        let is_own =
-            |line: &&String| matches!(line.strip_prefix(&own), Some(rest) if rest.is_empty() || rest.starts_with(';'));
+        let own = without_lines(&self.to_string());
+        let is_own = |line: &&String| without_lines(line.split("; ").next().unwrap_or(line)) == own;
         lines.iter().find(is_own).map(String::as_str)
     }
 
@@ -94,6 +94,15 @@ impl fmt::Display for Mutant {
     }
 }
 
+/// Shortens each `FILE.v:LINE` to `FILE.v`.
+fn without_lines(text: &str) -> String {
+    let mut parts = text.split(".v:");
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.fold(first, |text, part| {
+        text + ".v" + part.trim_start_matches(|character: char| character.is_ascii_digit())
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -115,9 +124,11 @@ mod tests {
         assert!(mutant.keeps_registers());
         let found = format!("{mutant}; a search tells it from the block after 3 clocks");
         assert_eq!(
-            mutant.line_among(&[format!("{mutant}4"), found.clone()]),
+            mutant.line_among(&[mutant.to_string().replace("borrow[6]", "borrow[7]"), found.clone()]),
             Some(found.as_str())
         );
+        let moved = found.replace("velocity.v:42", "velocity.v:43");
+        assert_eq!(mutant.line_among(std::slice::from_ref(&moved)), Some(moved.as_str()));
         let register = Mutant::parse(&line.replace("-port Y", "-port Q")).unwrap();
         assert!(!register.keeps_registers());
         assert_eq!(Mutant::parse("mutate -ctrl mutsel 16 0 -mode none"), None);

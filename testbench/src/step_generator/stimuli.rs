@@ -122,7 +122,14 @@ impl StepGeneratorRandom {
             Act::Jump => {
                 let shift = self.rng.random_range(0..32);
                 self.act = Act::Ride(0);
-                self.position ^ i64::from(self.rng.next_u32() as i32 >> shift)
+                // A single bit too much is rare among random words.
+                let single = self.rng.random::<bool>();
+                let bits = if single {
+                    1 << shift
+                } else {
+                    self.rng.next_u32() as i32 >> shift
+                };
+                self.position ^ i64::from(bits)
             }
         }
     }
