@@ -4,6 +4,7 @@
 mod error_table_loop;
 mod fault_campaign;
 mod inline;
+mod inline_run;
 mod latency;
 mod moving_modes;
 mod stage;

@@ -9,6 +9,7 @@ mod checks;
 mod closed_loop;
 mod excerpt;
 mod gain;
+mod inline;
 mod options;
 mod page;
 mod pictures;
@@ -33,6 +34,7 @@ use crate::simulate::simulate_axes;
 use crate::text::json_text;
 use crate::{sopc, synth};
 use closed_loop::{ClosedLoop, NamedContour};
+use inline::InlineLoop;
 use posicast_closed_loop::stage_run::Circle;
 use posicast_machine::compare::{DEFAULT_BAND, compare};
 use posicast_machine::machine_file::Machine;
@@ -53,6 +55,7 @@ pub use closed_loop::{
     Compensation, DrivenCircle, FollowedPath, FollowedRow, MovedAxis, PathDistance, PathError, StageFigures,
     TickSchedule,
 };
+pub use inline::{InlineRunAxis, InlineRunFigures};
 pub use options::Options;
 pub use report::{Document, PlantStep, RunAxis, RunVerdict, StepOnPlant};
 pub use sentence::RunSentence;
@@ -85,15 +88,16 @@ pub fn run(options: &Options, observer: &dyn Observer) -> Result<Outcome<Documen
     let (lockstep, waves) = compare_shapers(options, (&design, &plan), &rtl, &axes, &mut package, observer)?;
     let estimate = estimate(&plan, machine, rtl.sources.files(), observer)?;
     let closed_loop = run_stage(options, (machine, &plan), &rtl, observer)?;
+    let inline = inline::run((&design, path), &plan, &rtl, options.seed, observer)?;
 
     let mut checks = Vec::from_iter(checks::lint(plan.simulator, &rtl.sources, &rtl.tops())?);
     checks.push(checks::moves(machine, &axes));
     checks.extend(checks::all(plan.simulator, machine, &design.design, &lockstep, &waves));
-    checks.extend(checks::inline(&built));
     checks.extend(checks::link(built.link.as_ref()));
     checks.extend(checks::buses(&built.buses));
     checks.extend(estimate.as_ref().and_then(|e| checks::fits(machine, e)));
     checks.extend(closed_loop.iter().flat_map(ClosedLoop::checks));
+    checks.extend(inline.iter().flat_map(InlineLoop::checks));
     let kinds = compare(machine, DEFAULT_BAND);
     let report = RunReport {
         machine,
@@ -106,6 +110,7 @@ pub fn run(options: &Options, observer: &dyn Observer) -> Result<Outcome<Documen
         waves: &waves,
         estimate: estimate.as_ref(),
         closed_loop: closed_loop.as_ref(),
+        inline: inline.as_ref(),
         checks: &checks,
         words: &plan.words,
         gains: gain::of_axes(machine, &plan.words, &axes, |axis| {
@@ -202,21 +207,28 @@ impl Rtl<'_> {
         let components = self.built.components.iter().chain(stage);
         let components = components.map(|component| component as &dyn Block);
         let link = self.built.link.as_ref().map(|link| link as &dyn Block);
-        let inline = self.built.inline.as_ref().map(|inline| inline as &dyn Block);
-        let with_registers = self.built.inline_registers.as_ref();
         std::iter::once(self.top as &dyn Block)
             .chain(components)
-            .chain(inline)
-            .chain(with_registers.map(|inline| inline as &dyn Block))
+            .chain(self.inline())
             .chain(link)
             .chain(self.built.buses.iter().map(|bus| bus as &dyn Block))
             .collect()
     }
 
+    /// The inline shaper, with registers or without.
+    fn inline(&self) -> Option<&dyn Block> {
+        let without = self.built.inline.as_ref().map(|inline| inline as &dyn Block);
+        let with = self.built.inline_registers.as_ref().map(|inline| inline as &dyn Block);
+        without.or(with)
+    }
+
     /// Refuses a run for which a tool is missing, before anything is simulated and not only in the step that needs it.
     fn require_tools(&self, simulator: Simulator) -> Result<(), Failure> {
         let stage = self.built.stage.as_ref().filter(|_| simulator == Simulator::Verilator);
-        let simulated = std::iter::once(self.top as &dyn Block).chain(stage.map(|stage| &stage.block as &dyn Block));
+        let inline = self.inline().filter(|_| simulator == Simulator::Verilator);
+        let simulated = std::iter::once(self.top as &dyn Block)
+            .chain(stage.map(|stage| &stage.block as &dyn Block))
+            .chain(inline);
         let simulated = simulated.map(|block| Ok((block, self.sources.reached_by(block).map_err(bench::failure)?)));
         let simulated = simulated.collect::<Result<Vec<_>, Failure>>()?;
         let simulated = simulated.iter().map(|(block, sources)| (*block, sources)).collect();
@@ -284,7 +296,11 @@ fn run_stage<'a>(
 fn add_report(package: &mut Package, report: &RunReport<'_>, document: &Document) -> Result<(), Failure> {
     let mut add = |name: &str, text: &str| package.add_evidence(name, text.as_bytes()).map_err(Failure::because);
     let (machine, design) = (report.machine, &report.design.design);
-    let closed_loop: Vec<(&str, Vec<Panel>)> = report.closed_loop.into_iter().flat_map(ClosedLoop::pictures).collect();
+    let of_inline = report.inline.into_iter().map(InlineLoop::picture);
+    let closed_loop: Vec<(&str, Vec<Panel>)> = (report.closed_loop.into_iter())
+        .flat_map(ClosedLoop::pictures)
+        .chain(of_inline)
+        .collect();
     for (name, panels) in &closed_loop {
         add(name, &plot::svg(panels)?)?;
     }

@@ -66,6 +66,37 @@ fn cli_inline_verilog_equals_its_model() {
 }
 
 #[test]
+fn cli_inline_is_run_between_a_controller_and_its_machine() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = folder.path().join("router");
+    let arguments = ["--cycles", "100000", "--move", "x=10,y=5,z=0.5", "-o"];
+    posicast()
+        .arg("run")
+        .arg(example("inline.toml"))
+        .args(arguments)
+        .arg(&output)
+        .assert()
+        .success();
+    let report = std::fs::read_to_string(output.join("report.json")).unwrap();
+    let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+    let inline = &report["inline"];
+    assert_eq!(inline["side_by_side"]["mismatches"], 0, "{inline}");
+    assert_eq!(inline["side_by_side"]["whole"], true, "{inline}");
+    let steps = |axis: usize| {
+        [
+            &inline["axes"][axis]["sent_steps"],
+            &inline["axes"][axis]["given_steps"],
+        ]
+        .map(|of| of.as_i64())
+    };
+    // 80 steps per mm, and 640 of z.
+    assert_eq!(steps(0), [Some(800); 2]);
+    assert_eq!(steps(1), [Some(400); 2]);
+    assert_eq!(steps(2), [Some(320); 2]);
+    assert!(output.join("plots/inline-vibration.svg").exists());
+}
+
+#[test]
 fn cli_inline_pulses_that_the_filter_swallows_are_refused() {
     let words = [
         "machine.toml:30",

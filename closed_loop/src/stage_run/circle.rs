@@ -309,7 +309,7 @@ pub(super) fn measure(run: &StageRun<'_>, mut host: Host<'_>, circle: &Circle) -
         trouble = stream(&mut host, &paths)?;
     }
     if trouble.is_none() {
-        trouble = host.rest(moves::settle_ticks(run))?;
+        trouble = host.rest(moves::settle_ticks_of(run))?;
     }
     let samples = run.recorded(&mut host);
     let points = match samples.as_slice() {

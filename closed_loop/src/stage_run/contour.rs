@@ -54,7 +54,7 @@ pub(super) fn measure(
         trouble = circle::stream(&mut host, &paths)?;
     }
     if trouble.is_none() {
-        trouble = host.rest(moves::settle_ticks(run))?;
+        trouble = host.rest(moves::settle_ticks_of(run))?;
     }
     let recorded = run.recorded(&mut host);
     let followed = match recorded.as_slice() {

@@ -91,7 +91,7 @@ pub(super) fn of_move(
     let Some(stage) = hardware::stage(machine, &design)? else {
         return Ok(Vec::new());
     };
-    let ticks = moves::settle_ticks(run);
+    let ticks = moves::settle_ticks_of(run);
     let axes = machine.axes.iter().enumerate().zip(&design.axes);
     let moves = run.moves.iter().zip(&run.harsh);
     let mut expectations = Vec::new();
@@ -115,10 +115,13 @@ pub(super) fn of_move(
         };
         let at_end = at_end.as_ref().unwrap_or(axis);
         let expected = match timed {
-            None => {
-                let references = shaped(&commands, &table, scales(axis, machine.clock.sample_hz));
-                stepped::expected(at_end, machine.clock.sample_hz, &references, frequency_factor)?
-            }
+            None => stepped_move(
+                at_end,
+                machine.clock.sample_hz,
+                &planned,
+                (&table, ticks),
+                frequency_factor,
+            )?,
             Some(TimedLoop { derived, lag_s }) => {
                 let sampled = SampledLoop::new(at_end, machine.clock, *lag_s, frequency_factor);
                 let sampled = sampled.unwrap_or_else(|| derived.sampled.clone());
@@ -128,6 +131,18 @@ pub(super) fn of_move(
         expectations.push(Expected { handover, ..expected });
     }
     Ok(expectations)
+}
+
+/// Expected figures of a planned move of an axis with steps, through a tap table, until it has stood for some ticks.
+pub(crate) fn stepped_move(
+    axis: &AxisSection,
+    sample_hz: f64,
+    planned: &(Vec<Entry>, i32),
+    (table, settle_ticks): (&TapTable, u64),
+    frequency_factor: f64,
+) -> Result<Expected, StageRunError> {
+    let references = shaped(&commands(planned, settle_ticks), table, scales(axis, sample_hz));
+    stepped::expected(axis, sample_hz, &references, frequency_factor)
 }
 
 /// Whether, by axis, the move would not exercise the shaper clearly.
@@ -196,7 +211,7 @@ fn scales(axis: &AxisSection, sample_hz: f64) -> [f64; 3] {
 }
 
 /// The command words of a move in every tick, and at standstill after it.
-fn commands((entries, end): &(Vec<Entry>, i32), settle_ticks: u64) -> Vec<[f64; 3]> {
+pub(crate) fn commands((entries, end): &(Vec<Entry>, i32), settle_ticks: u64) -> Vec<[f64; 3]> {
     let mut at = Integrator::default();
     let mut commands = Vec::new();
     for entry in entries {

@@ -26,7 +26,7 @@ pub(super) fn arrival(samples: &[AxisSample]) -> usize {
 }
 
 /// Vibration of the load about its rest position, from the end of the shaped command on, and that position.
-pub(super) fn ringing(samples: &[AxisSample]) -> (Vec<f64>, f64) {
+pub(crate) fn ringing(samples: &[AxisSample]) -> (Vec<f64>, f64) {
     let load: Vec<f64> = samples[arrival(samples)..].iter().map(|sample| sample.load).collect();
     let resting = &load[load.len() - load.len() / REST_PART..];
     let rest = resting.iter().sum::<f64>() / resting.len().max(1) as f64;
@@ -34,7 +34,7 @@ pub(super) fn ringing(samples: &[AxisSample]) -> (Vec<f64>, f64) {
 }
 
 /// The figures of an axis with this many counts per unit.
-pub(super) fn of_move(samples: &[AxisSample], counts_per_unit: f64) -> AxisFigures {
+pub(crate) fn of_move(samples: &[AxisSample], counts_per_unit: f64) -> AxisFigures {
     let of = |value: fn(&AxisSample) -> f64| samples.iter().map(value).collect::<Vec<f64>>();
     let tracking = tracking_error(&of(|sample| sample.error), &vec![0.0; samples.len()]);
     let (ringing, rest) = ringing(samples);

@@ -17,7 +17,7 @@ const LONGEST_SETTLE_S: f64 = 2.0;
 /// A move counts as over this many ticks after the end of plan and shapers.
 const SPARE_TICKS: u64 = 1000;
 /// Number of ticks at the end in which nothing moves any more.
-const STANDSTILL_TICKS: u64 = 20;
+pub(crate) const STANDSTILL_TICKS: u64 = 20;
 /// Fraction bits of a command word and of an exact position.
 const WORD_FRACTION: u32 = 8;
 const EXACT_FRACTION: u32 = 32;
@@ -56,7 +56,7 @@ struct Plan {
 
 /// Plans the move of an axis from `start` (Q24.8 counts) on: its entries, and its end. A `harsh` move has no jerk
 /// limit.
-pub(super) fn plan_axis(
+pub(crate) fn plan_axis(
     machine: &Machine,
     axis: &AxisSection,
     of: &AxisMove,
@@ -123,11 +123,16 @@ fn shaper_ticks(run: &StageRun<'_>) -> u64 {
     own.chain(families).max().unwrap_or(0).into()
 }
 
+/// The ticks that the machine of a run is simulated after the end of its commands.
+pub(super) fn settle_ticks_of(run: &StageRun<'_>) -> u64 {
+    settle_ticks(run.machine, shaper_ticks(run))
+}
+
 /// Returns the ticks that a machine is simulated after the end of its commands: the shapers' tail, and settling.
-pub(super) fn settle_ticks(run: &StageRun<'_>) -> u64 {
-    let clock = &run.machine.clock;
-    let modes = run.machine.axes.iter().flat_map(|axis| &axis.modes);
-    let shaper_s = shaper_ticks(run) as f64 / clock.sample_hz;
+pub(crate) fn settle_ticks(machine: &Machine, shaper_ticks: u64) -> u64 {
+    let clock = &machine.clock;
+    let modes = machine.axes.iter().flat_map(|axis| &axis.modes);
+    let shaper_s = shaper_ticks as f64 / clock.sample_hz;
     let settle_s = settle_s(shaper_s, modes.map(|mode| mode.mode)).min(shaper_s + LONGEST_SETTLE_S);
     (settle_s * clock.sample_hz).ceil() as u64 + STANDSTILL_TICKS
 }
@@ -159,7 +164,7 @@ pub(super) fn measure(run: &StageRun<'_>, mut host: Host<'_>, shaping: Shaping) 
         Err(trouble) => Some(trouble),
     };
     if trouble.is_none() {
-        trouble = host.rest(settle_ticks(run))?;
+        trouble = host.rest(settle_ticks_of(run))?;
     }
     let samples = run.recorded(&mut host);
     let axes = samples.iter().zip(&run.machine.axes);

@@ -4,7 +4,6 @@ use super::advice::{self, Advice};
 use super::waves::Waves;
 use crate::bench::{self, Simulator};
 use crate::failure::Failure;
-use crate::hardware::Built;
 use crate::text::percent;
 use crate::tolerance::{beyond_tolerance, just_above_tolerance, shaped_modes};
 use posicast_machine::machine_file::Machine;
@@ -356,18 +355,6 @@ pub(crate) fn lint(simulator: Simulator, sources: &Sources, tops: &[&dyn Block])
         warnings.is_empty(),
         warnings.first().cloned().unwrap_or_else(clean),
     )))
-}
-
-/// The inline shaper, which a run does not simulate.
-pub(crate) fn inline(built: &Built<'_>) -> Option<Check> {
-    let top = built.inline_top()?;
-    let block = built.link.as_ref().map_or("inline_shaper", |link| link.name());
-    let reason = format!("a run does not simulate {top}; `posicast verify MACHINE --block {block}` does");
-    Some(Check::not_exercised(
-        "the inline shaper equals its model in every clock",
-        true,
-        &reason,
-    ))
 }
 
 /// The components on another bus, which a run does not simulate.

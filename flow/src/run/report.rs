@@ -3,6 +3,7 @@
 use super::checks::Check;
 use super::closed_loop::{ClosedLoop, StageFigures};
 use super::gain::Gain;
+use super::inline::{InlineLoop, InlineRunFigures};
 use super::sentence::RunSentence;
 use super::waves::Waves;
 use crate::bench::Simulator;
@@ -39,6 +40,7 @@ pub(crate) struct RunReport<'a> {
     pub(crate) waves: &'a Waves,
     pub(crate) estimate: Option<&'a Estimate>,
     pub(crate) closed_loop: Option<&'a ClosedLoop<'a>>,
+    pub(crate) inline: Option<&'a InlineLoop<'a>>,
     pub(crate) checks: &'a [Check],
     /// The command of the move, per axis.
     pub(crate) words: &'a [Vec<i64>],
@@ -134,6 +136,7 @@ impl RunReport<'_> {
             rtl_against_float: self.waves.float.clone(),
             synth: self.estimate.cloned(),
             stage: self.closed_loop.map(ClosedLoop::json),
+            inline: self.inline.map(InlineLoop::json),
             kinds: compare::Document::new(self.machine, 100.0 * DEFAULT_BAND, self.kinds),
             checks: self.checks.to_vec(),
             folder: PathBuf::new(),
@@ -188,6 +191,9 @@ pub struct Document {
     /// The closed loop; absent where the machine file describes no stage.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stage: Option<StageFigures>,
+    /// The inline shaper; absent where the machine file has no `[axis.input]`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub inline: Option<InlineRunFigures>,
     /// As `design --compare --json`.
     pub kinds: compare::Document,
     /// All checks.

@@ -231,15 +231,22 @@ pub fn check(
     progress: &mut dyn FnMut(u64),
 ) -> Result<LockstepReport, Error> {
     let mut stimuli = block.stimuli(cycles, seed);
+    check_with(block, device, stimuli.as_mut(), (cycles, seed), progress)
+}
+
+/// As [`check`], with other stimuli.
+///
+/// # Errors
+/// As [`lockstep::run`].
+pub fn check_with(
+    block: &dyn Block,
+    device: &mut dyn Device,
+    stimuli: &mut dyn Stimuli,
+    clocks_and_seed: (u64, u64),
+    progress: &mut dyn FnMut(u64),
+) -> Result<LockstepReport, Error> {
     let mut to_the_end = |_: &Clock<'_>| ControlFlow::Continue(());
-    run(
-        block,
-        device,
-        stimuli.as_mut(),
-        (cycles, seed),
-        &mut to_the_end,
-        progress,
-    )
+    run(block, device, stimuli, clocks_and_seed, &mut to_the_end, progress)
 }
 
 /// As [`check`], for a verdict: it compares the smallest number of `clocks`, then continues until everything was

@@ -6,7 +6,7 @@ mod pictures;
 mod probing;
 mod report;
 mod step_lines;
-mod verdicts;
+pub(super) mod verdicts;
 
 use crate::bench::{self, Simulator};
 use crate::failure::Failure;

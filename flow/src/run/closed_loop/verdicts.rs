@@ -170,70 +170,36 @@ impl ClosedLoop<'_> {
     /// The shapers must suppress the vibration for which they are designed. Returns a check for the axes whose moves
     /// exercise it, and a note about the others; nothing if no axis has a shaper.
     fn calmer(&self) -> Vec<Check> {
-        let name = "the shapers suppress the vibration of the move that they are made for";
         if [&self.shaped, &self.unshaped]
             .iter()
             .any(|moved| moved.trouble.is_some())
         {
             // The check of the faults reports this failure.
-            return vec![Check::not_exercised(name, true, "the move was given up before its end")];
+            return vec![Check::not_exercised(
+                CALMER,
+                true,
+                "the move was given up before its end",
+            )];
         }
         let built = &self.stage.of_machine.config.axes;
-        let (mut louder, mut held, mut open) = (None, Vec::new(), Vec::new());
+        let mut rung = Vec::new();
         for (index, (axis, built)) in self.machine.axes.iter().zip(built).enumerate() {
             if axis.modes.is_empty() || built.shaper.table().taps().len() < 2 {
                 continue;
             }
             let of = |at: usize| Some((self.moves()[at].axes.get(index)?, self.expected[at].get(index)?));
-            let (Some((shaped, expected)), Some((unshaped, bare))) = (of(0), of(1)) else {
-                open.push(format!("axis {} did not move", axis.name));
-                continue;
-            };
-            let [found, allowed, without] = [shaped.residual.peak, expected.ringing_allowed(), unshaped.residual.peak];
-            let figures = [
-                found,
-                expected.figures.residual.peak,
-                allowed,
-                without,
-                expected.handover,
-            ];
-            let [of_shaper, of_design, most, bare_found, of_handovers] = axis.unit.show_compared(figures);
-            let handed = if expected.handover > 0.0 {
-                format!(", {of_handovers} for {}", counted(self.shaped.handovers, "hand-over"))
-            } else {
-                String::new()
-            };
-            let text = format!(
-                "axis {}: {of_shaper} with its shaper, {of_design} expected from its design, {most} allowed{handed}, {bare_found} without",
-                axis.name
-            );
-            if found.is_nan() || found > allowed || without.is_nan() || without > bare.ringing_allowed() {
-                louder.get_or_insert(text);
-            } else if expected.exercises(bare) && without > allowed && expected.moves() {
-                let harsh = match self.harsh.get(index) {
-                    Some(true) => ", by a move without a limit of the jerk",
-                    _ => "",
-                };
-                held.push(text + harsh);
-            } else {
-                open.push(text);
-            }
+            let figures = of(0).zip(of(1)).map(|((shaped, expected), (unshaped, bare))| Ringing {
+                found: shaped.residual.peak,
+                without: unshaped.residual.peak,
+                expected,
+                bare,
+                handovers: self.shaped.handovers,
+                harsh: self.harsh.get(index).copied().unwrap_or(false),
+            });
+            rung.push((axis, figures));
         }
-        let mut checks = Vec::new();
-        if let Some(detail) = louder {
-            checks.push(Check::new(name, false, detail));
-        } else if !held.is_empty() {
-            checks.push(Check::new(name, true, held.join("; ")));
-        }
-        if !open.is_empty() {
-            // A move that is too short for any figure already fails in the check of the error.
-            checks.push(Check::not_exercised(
-                "every shaper is exercised by the move",
-                self.motionless().is_none(),
-                &format!("{}: too small to distinguish from counts and friction", open.join("; ")),
-            ));
-        }
-        checks
+        // A move that is too short for any figure already fails in the check of the error.
+        calmer(&rung, self.motionless().is_none())
     }
 
     /// With its error table, the load of an axis must rest at its target; there is no check if no axis has a table.
@@ -289,10 +255,98 @@ impl ClosedLoop<'_> {
     }
 }
 
+/// Name of the check of the vibration after a move.
+const CALMER: &str = "the shapers suppress the vibration of the move that they are made for";
+
+/// Vibration of the load of an axis about its place of rest after its move, in m or rad.
+pub(crate) struct Ringing<'a> {
+    /// With the shaper.
+    pub(crate) found: f64,
+    /// Without it.
+    pub(crate) without: f64,
+    /// Figures of the design with the shaper.
+    pub(crate) expected: &'a Expected,
+    /// Figures without it.
+    pub(crate) bare: &'a Expected,
+    /// Changes of the tap table in the move.
+    pub(crate) handovers: u64,
+    /// Whether the move has no limit of the jerk, though the machine file has one.
+    pub(crate) harsh: bool,
+}
+
+/// The shapers of these axes must suppress the vibration for which they are designed; without figures the axis did not move. Returns a
+/// check for the axes whose moves exercise it, and a note about the others, which holds if `open_passes`.
+pub(crate) fn calmer(rung: &[(&AxisSection, Option<Ringing<'_>>)], open_passes: bool) -> Vec<Check> {
+    let (mut louder, mut held, mut open) = (None, Vec::new(), Vec::new());
+    for (axis, figures) in rung {
+        let Some(figures) = figures else {
+            open.push(format!("axis {} did not move", axis.name));
+            continue;
+        };
+        let Ringing {
+            found,
+            without,
+            expected,
+            bare,
+            ..
+        } = *figures;
+        let allowed = expected.ringing_allowed();
+        let shown = [
+            found,
+            expected.figures.residual.peak,
+            allowed,
+            without,
+            expected.handover,
+        ];
+        let [of_shaper, of_design, most, bare_found, of_handovers] = axis.unit.show_compared(shown);
+        let handed = if expected.handover > 0.0 {
+            format!(", {of_handovers} for {}", counted(figures.handovers, "hand-over"))
+        } else {
+            String::new()
+        };
+        let text = format!(
+            "axis {}: {of_shaper} with its shaper, {of_design} expected from its design, {most} allowed{handed}, {bare_found} without",
+            axis.name
+        );
+        if found.is_nan() || found > allowed || without.is_nan() || without > bare.ringing_allowed() {
+            louder.get_or_insert(text);
+        } else if expected.exercises(bare) && without > allowed && expected.moves() {
+            let harsh = if figures.harsh {
+                ", by a move without a limit of the jerk"
+            } else {
+                ""
+            };
+            held.push(text + harsh);
+        } else {
+            open.push(text);
+        }
+    }
+    let mut checks = Vec::new();
+    if let Some(detail) = louder {
+        checks.push(Check::new(CALMER, false, detail));
+    } else if !held.is_empty() {
+        checks.push(Check::new(CALMER, true, held.join("; ")));
+    }
+    if !open.is_empty() {
+        checks.push(Check::not_exercised(
+            "every shaper is exercised by the move",
+            open_passes,
+            &format!("{}: too small to distinguish from counts and friction", open.join("; ")),
+        ));
+    }
+    checks
+}
+
 /// The check of a comparison; `end` names the end of a complete one.
 pub(super) fn equals_model(compared: &Compared, end: &str) -> Check {
+    let name = "the stage's RTL equals the bit-exact model in every clock of the closed loop";
+    named_equals_model(name, compared, ("from reset over switch-on", end))
+}
+
+/// The same under another name, with the way and the end of a complete comparison in words.
+pub(crate) fn named_equals_model(name: &'static str, compared: &Compared, (way, end): (&str, &str)) -> Check {
     let reach = if compared.whole {
-        format!("from reset over switch-on to {end}")
+        format!("{way} to {end}")
     } else {
         format!("from reset on, not to {end}")
     };
@@ -320,7 +374,7 @@ pub(super) fn equals_model(compared: &Compared, end: &str) -> Check {
     Check {
         coverage,
         ..Check::new(
-            "the stage's RTL equals the bit-exact model in every clock of the closed loop",
+            name,
             compared.clocks > 0 && compared.mismatches == 0 && compared.trouble.is_none(),
             detail,
         )

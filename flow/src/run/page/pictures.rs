@@ -127,6 +127,11 @@ impl RunReport<'_> {
                     "Circle",
                     "How far the load is outside of a circle of two axes: with each shaper's own delay, and with delays made equal.",
                 ),
+                "plots/inline-vibration.svg" => (
+                    "Through the inline shaper: after the move",
+                    "What is left of the vibration once the steps have ended: with the steps of the controller, and with those of the \
+                     inline shaper.",
+                ),
                 "plots/stage-contour.svg" => ("Contour", "How far the load is from the path of the contour."),
                 _ => ("Closed loop: error tables", "Where the load comes to rest, with the error table and without it."),
             };
