@@ -1,7 +1,7 @@
 //! `posicast generate`: writes the Verilog of a machine, and the files that Quartus needs with it, into a folder.
 
 use crate::Outcome;
-use crate::amd;
+use crate::bus_files;
 use crate::design::DesignReport;
 use crate::driver;
 use crate::failure::Failure;
@@ -85,7 +85,7 @@ pub(crate) fn add(
     )?;
     driver::add(package, machine, &modules, built)?;
     vhdl::add(package, (machine, path), &modules, built, observer)?;
-    amd::add(package, machine, &modules, built)?;
+    bus_files::add(package, machine, &modules, built)?;
     Ok(sources)
 }
 

@@ -4,10 +4,10 @@
 //! for texts alone. Nothing here reads arguments, prints, or draws a progress bar: messages of a step go to the front's [`Observer`].
 
 mod allowance;
-mod amd;
 mod bench;
 pub mod bitstream;
 mod blocks;
+mod bus_files;
 pub mod campaign;
 pub mod choice;
 mod command;

@@ -28,6 +28,18 @@ fn cli_buses_have_a_top_per_component_and_their_datasheet() {
         // Cores for Vivado are on AXI4-Lite.
         let core = output.join(format!("amd/xy_stage_stage_{suffix}/component.xml"));
         assert_eq!(core.is_file(), bus == "axi4-lite");
+        // The module for LiteX is on Wishbone; it names files of the package.
+        let module = output.join("litex/posicast_xy_stage.py");
+        assert_eq!(module.is_file(), bus == "wishbone");
+        if bus == "wishbone" {
+            let text = std::fs::read_to_string(module).unwrap();
+            let sources: Vec<&str> = text.split('"').filter(|word| word.ends_with(".v")).collect();
+            assert!(sources.contains(&"rtl/xy_stage_stage_wishbone.v"), "{sources:?}");
+            assert!(
+                sources.iter().all(|source| output.join(source).is_file()),
+                "{sources:?}"
+            );
+        }
         let package = std::fs::read_to_string(output.join(format!("vhdl/xy_stage_stage_{suffix}_pkg.vhd"))).unwrap();
         assert_eq!(package.contains("PIPELINED : natural := 0"), bus == "wishbone");
         // The component itself stays what it is on its own bus.

@@ -5,7 +5,8 @@ use std::fmt::Write;
 use posicast_blocks::Direction;
 use posicast_blocks::registers::{Register, RegisterMap};
 
-use super::{AmdCore, LIBRARY, VENDOR, VERSION, has_interrupt};
+use super::{LIBRARY, VENDOR, VERSION};
+use crate::bus_top::BusTop;
 use crate::register_documents::{Software, WORD_BYTES, escaped, fields, meaning, software};
 
 /// Name of the bus interface, and of its memory map.
@@ -108,7 +109,7 @@ impl Elements {
 }
 
 /// The document of a core.
-pub(super) fn document(core: &AmdCore<'_>) -> String {
+pub(super) fn document(core: &BusTop<'_>) -> String {
     let mut text = Elements {
         text: "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<spirit:component xmlns:xilinx=\"http://www.xilinx.com\" \
                xmlns:spirit=\"http://www.spiritconsortium.org/XMLSchema/SPIRIT/1685-2009\" \
@@ -154,7 +155,7 @@ pub(super) fn document(core: &AmdCore<'_>) -> String {
     text.text
 }
 
-fn interfaces(of: &mut Elements, core: &AmdCore<'_>) {
+fn interfaces(of: &mut Elements, core: &BusTop<'_>) {
     let one = |signal: &str, port: &str| vec![(signal.to_owned(), port.to_owned())];
     let signals = SIGNALS.map(|signal| (signal.to_owned(), format!("{BUS}_{}", signal.to_lowercase())));
     of.bus(BUS, ("interface", "aximm", "1.0"), "slave", &signals, &[]);
@@ -174,7 +175,7 @@ fn interfaces(of: &mut Elements, core: &AmdCore<'_>) {
         &one("RST", "rst"),
         &of_reset,
     );
-    if has_interrupt(core) {
+    if core.has_interrupt() {
         let of_irq = [("SENSITIVITY", "LEVEL_HIGH")];
         of.bus(
             "irq",
@@ -235,7 +236,7 @@ fn write_register(of: &mut Elements, map: &RegisterMap, register: &Register) {
     }
 }
 
-fn model(of: &mut Elements, core: &AmdCore<'_>) {
+fn model(of: &mut Elements, core: &BusTop<'_>) {
     of.nest("views", |of| {
         for (view, title) in VIEWS {
             of.nest("view", |of| {
@@ -285,7 +286,7 @@ fn short(view: &str) -> &str {
     view.strip_prefix("behavioral").unwrap_or(view)
 }
 
-fn file_sets(of: &mut Elements, core: &AmdCore<'_>) {
+fn file_sets(of: &mut Elements, core: &BusTop<'_>) {
     for (view, _) in VIEWS {
         of.nest("fileSet", |of| {
             of.leaf("name", format!("xilinx_anylanguage{view}_view_fileset"));

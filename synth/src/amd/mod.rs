@@ -12,8 +12,7 @@
 mod component_xml;
 mod scripts;
 
-use posicast_blocks::Port;
-use posicast_blocks::registers::RegisterMap;
+use crate::bus_top::BusTop;
 
 /// Folder of the files.
 pub const FOLDER: &str = "amd";
@@ -23,21 +22,8 @@ const LIBRARY: &str = "machines";
 /// Version of a core: that of its interfaces.
 const VERSION: &str = "1.0";
 
-/// A top module on AXI4-Lite.
-#[derive(Debug, Clone)]
-pub struct AmdCore<'a> {
-    /// Name of the module.
-    pub top: &'a str,
-    /// Its ports without `clk`, in the order of the Verilog.
-    pub ports: &'a [Port],
-    /// Its registers.
-    pub map: &'a RegisterMap,
-    /// Paths of its Verilog in the output folder, its own last.
-    pub sources: Vec<String>,
-}
-
 /// The files of a machine's cores, as path in the output folder and text. The first core is that of the block designs.
-pub fn files(machine: &str, clock_hz: f64, cores: &[AmdCore<'_>]) -> Vec<(String, String)> {
+pub fn files(machine: &str, clock_hz: f64, cores: &[BusTop<'_>]) -> Vec<(String, String)> {
     let of_core = cores.iter().flat_map(|core| {
         let folder = format!("{FOLDER}/{}", core.top);
         [
@@ -56,9 +42,4 @@ pub fn files(machine: &str, clock_hz: f64, cores: &[AmdCore<'_>]) -> Vec<(String
         ]
     });
     of_core.chain(scripts).collect()
-}
-
-/// Whether the core has an interrupt.
-fn has_interrupt(core: &AmdCore<'_>) -> bool {
-    core.ports.iter().any(|port| port.name == "irq")
 }

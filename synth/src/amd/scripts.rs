@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use super::{AmdCore, LIBRARY, VENDOR, VERSION, has_interrupt};
+use super::{LIBRARY, VENDOR, VERSION};
+use crate::bus_top::BusTop;
 
 fn head(about: &str) -> String {
     format!(
@@ -12,7 +13,7 @@ fn head(about: &str) -> String {
 }
 
 /// The exceptions of a core, which Vivado scopes to its instances.
-pub(super) fn constraints(core: &AmdCore<'_>) -> String {
+pub(super) fn constraints(core: &BusTop<'_>) -> String {
     let mut text = head(&format!("Timing exceptions of {}", core.top));
     let has = |end: &str| core.sources.iter().any(|source| source.ends_with(end));
     if has("_synchroniser.v") {
@@ -36,7 +37,7 @@ pub(super) fn constraints(core: &AmdCore<'_>) -> String {
 }
 
 /// The script that packages all cores by Vivado's packager.
-pub(super) fn package(machine: &str, cores: &[AmdCore<'_>]) -> String {
+pub(super) fn package(machine: &str, cores: &[BusTop<'_>]) -> String {
     let mut text = head(&format!(
         "Packages the cores of {machine} anew: vivado -mode batch -source amd/package_ip.tcl"
     ));
@@ -68,7 +69,7 @@ close_project
 }
 
 /// What both block designs do with the core: its cell, its clock, and its pins to the outside.
-fn with_core(core: &AmdCore<'_>, master: &str) -> String {
+fn with_core(core: &BusTop<'_>, master: &str) -> String {
     let top = core.top;
     format!(
         "
@@ -85,7 +86,7 @@ connect_bd_net [get_bd_pins $reset/peripheral_reset] [get_bd_pins core/rst]
     )
 }
 
-fn end(core: &AmdCore<'_>) -> String {
+fn end(core: &BusTop<'_>) -> String {
     let of_bus = |name: &str| name.starts_with("s_axi_") || ["rst", "irq"].contains(&name);
     let mut text =
         "\n# Its pins become pins of the design: place them, and mind what a gate driver does until then\n".to_owned();
@@ -121,7 +122,7 @@ create_bd_design machine
 }
 
 /// A block design with the processor of a Zynq-7000.
-pub(super) fn zynq7(machine: &str, clock_hz: f64, core: &AmdCore<'_>) -> String {
+pub(super) fn zynq7(machine: &str, clock_hz: f64, core: &BusTop<'_>) -> String {
     let mut text = begin(
         machine,
         &format!("A Zynq-7000 with {}", core.top),
@@ -140,21 +141,21 @@ set_property -dict [list CONFIG.PCW_FPGA0_PERIPHERAL_FREQMHZ {} CONFIG.PCW_USE_M
         clock_hz / 1e6
     );
     text += &with_core(core, "/processor/M_AXI_GP0");
-    if has_interrupt(core) {
+    if core.has_interrupt() {
         text.push_str("connect_bd_net [get_bd_pins core/irq] [get_bd_pins processor/IRQ_F2P]\n");
     }
     text + &end(core)
 }
 
 /// A block design with a MicroBlaze, for devices without a processor.
-pub(super) fn microblaze(machine: &str, clock_hz: f64, core: &AmdCore<'_>) -> String {
+pub(super) fn microblaze(machine: &str, clock_hz: f64, core: &BusTop<'_>) -> String {
     let mut text = begin(
         machine,
         &format!("A MicroBlaze with {}", core.top),
         "microblaze",
         "xc7a35tcpg236-1",
     );
-    let interrupt = if has_interrupt(core) { "1" } else { "0" };
+    let interrupt = if core.has_interrupt() { "1" } else { "0" };
     let _ = write!(
         text,
         "
@@ -169,7 +170,7 @@ connect_bd_net [get_bd_ports reset] [get_bd_pins [lindex [get_bd_cells -filter {
 "
     );
     text += &with_core(core, "/processor (Periph)");
-    if has_interrupt(core) {
+    if core.has_interrupt() {
         text.push_str(
             "connect_bd_net [get_bd_pins core/irq] [get_bd_pins [lindex [get_bd_cells -filter {VLNV =~ xilinx.com:ip:xlconcat:*}] 0]/In0]\n",
         );

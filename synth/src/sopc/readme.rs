@@ -82,9 +82,10 @@ to overwrite a file that was edited, and names it.
             bus.title(),
             bus.block()
         );
-        if bus == BridgedBus::AxiLite {
-            text.push_str("| `amd/` | these modules as IP cores for Vivado, and block designs for a Zynq-7000 and a MicroBlaze |\n");
-        }
+        text.push_str(match bus {
+            BridgedBus::AxiLite => "| `amd/` | these modules as IP cores for Vivado, and block designs for a Zynq-7000 and a MicroBlaze |\n",
+            BridgedBus::Wishbone { .. } => "| `litex/` | these modules for LiteX: a Python file with a class for each |\n",
+        });
     }
     text.push_str(
         "| `vhdl/` | for a design in VHDL: per top module a package with its component, and an instance to copy |\n",

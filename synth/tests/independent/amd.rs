@@ -3,7 +3,8 @@
 use super::{fields, output, python, stage, write};
 use posicast_blocks::bus_component::{BridgedBus, ports};
 use posicast_blocks::{Direction, Port};
-use posicast_synth::amd::{AmdCore, files};
+use posicast_synth::amd::files;
+use posicast_synth::bus_top::BusTop;
 use std::process::Command;
 
 /// Stands in for Vivado: every command is known by its name, and its arguments are printed.
@@ -21,7 +22,7 @@ set argc 0
 fn ipyxact_reads_interfaces_ports_files_and_the_registers_of_the_map() {
     let stage = stage();
     let of_stage = ports(&stage, BridgedBus::AxiLite);
-    let core = AmdCore {
+    let core = BusTop {
         top: "xy_stage_stage_axi",
         ports: &of_stage,
         map: stage.map(),
@@ -86,7 +87,7 @@ fn ipyxact_reads_interfaces_ports_files_and_the_registers_of_the_map() {
 fn the_scripts_for_vivado_are_tcl_and_reach_every_pin() {
     let stage = stage();
     let of_stage = ports(&stage, BridgedBus::AxiLite);
-    let core = AmdCore {
+    let core = BusTop {
         top: "xy_stage_stage_axi",
         ports: &of_stage,
         map: stage.map(),

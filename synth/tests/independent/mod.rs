@@ -1,10 +1,11 @@
 //! Checks generated files with independent tools: systemrdl-compiler, the schema of CMSIS-SVD and its parser, FuseSoC
-//! with Verilator and Icarus, and cocotb with the bus drivers of cocotb-bus, cocotbext-axi and cocotbext-wishbone.
+//! with Verilator and Icarus, LiteX, and cocotb with the bus drivers of cocotb-bus, cocotbext-axi and cocotbext-wishbone.
 //!
 //! These are Python programs in `.venv` of the repository, which `scripts/install-tools` creates.
 
 mod amd;
 mod buses;
+mod litex;
 mod vhdl;
 
 use posicast_blocks::component::Component;

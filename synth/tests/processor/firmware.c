@@ -15,45 +15,17 @@
 #define OF_X(interrupt) POSICAST_AXIS_INTERRUPT(X, POSICAST_INTERRUPT_##interrupt)
 #define OF_Y(interrupt) POSICAST_AXIS_INTERRUPT(Y, POSICAST_INTERRUPT_##interrupt)
 #define WATCHED (OF_X(MOVE_DONE) | OF_Y(MOVE_DONE) | OF_X(INDEX_SEEN) | OF_X(FAULTED) | OF_Y(STOPPING))
-/* The stage's interrupt at the core. */
-#define STAGE_IRQ 3u
 
-#define CONSOLE ((volatile uint32_t *)0x10000000u)
+#include CORE
 
 static posicast_stage stage;
 /* Events from interrupts since they were last cleared, and the number of each kind. */
 static volatile uint32_t happened, ticks_seen, events_seen, nothing_seen;
 
-void interrupt(void);
-
-void interrupt(void)
-{
-    const uint32_t now = posicast_take_interrupts(&stage);
-
-    happened |= now;
-    ticks_seen += (now & POSICAST_STAGE_INTERRUPT_STATE_TICK_MSK) != 0;
-    events_seen += (now & WATCHED) != 0;
-    nothing_seen += now == 0;
-}
-
-/* Instructions of picorv32. */
-static void let_through(uint32_t line)
-{
-    __asm__ volatile(".insn r 0x0b, 0, 3, x0, %0, x0" ::"r"(~(1u << line)));
-}
-
-static void sleep(void *context)
-{
-    uint32_t pending;
-
-    (void)context;
-    __asm__ volatile(".insn r 0x0b, 0, 4, %0, x0, x0" : "=r"(pending)::"memory");
-}
-
 static void print(const char *text)
 {
     while (*text != 0)
-        CONSOLE[0] = (uint8_t)*text++;
+        put(*text++);
 }
 
 static void step(const char *name)
@@ -72,15 +44,32 @@ static void result(const char *name, int32_t value)
     print(name);
     print(" ");
     for (shift = 28; shift >= 0; shift -= 4)
-        CONSOLE[0] = (uint8_t)digits[(uint32_t)value >> shift & 15u];
+        put(digits[(uint32_t)value >> shift & 15u]);
     print("\n");
 }
 
-static void end(uint32_t status)
+static void end(int32_t status)
 {
-    CONSOLE[1] = status;
+    result("end", status);
     for (;;)
         ;
+}
+
+void interrupt(void);
+
+void interrupt(void)
+{
+    uint32_t now;
+
+    mark_handler(1);
+    if (has_trapped())
+        end(3);
+    now = posicast_take_interrupts(&stage);
+    happened |= now;
+    ticks_seen += (now & POSICAST_STAGE_INTERRUPT_STATE_TICK_MSK) != 0;
+    events_seen += (now & WATCHED) != 0;
+    nothing_seen += now == 0;
+    mark_handler(0);
 }
 
 static void need(const char *what, posicast_result got, posicast_result wanted)

@@ -1,9 +1,11 @@
 //! Runs the driver on a RISC-V beside the stage: a core executes the unmodified C, takes the stage's interrupts, and
 //! moves the machine.
 
+mod core;
 mod system;
 
 use crate::driver::support::Driver;
+use core::Core;
 use posicast_machine::machine_file;
 use system::{Firmware, HOME_FROM, INDEX_AT, Outcome, Step, System};
 
@@ -30,7 +32,8 @@ fn run(system: &mut System, firmware: &Firmware, seed: u16) -> Outcome {
     })
 }
 
-fn check(system: &System, outcome: &Outcome) {
+/// `most_latency` is the largest number of clocks from the stage's interrupt to the handler.
+fn check(system: &System, outcome: &Outcome, most_latency: u64) {
     let said = |name: &str| outcome.results[name];
     // The axis is homed by the index, which is exactly position 1000.
     assert_eq!(said("origin"), INDEX_AT - 1000, "{outcome:#?}");
@@ -49,9 +52,9 @@ fn check(system: &System, outcome: &Outcome) {
     assert!((-60..90).contains(&stopped_at), "{stopped_at}");
     // The fault is cleared, and the move continues.
     assert_eq!(said("left_causes"), 0);
-    // The core was woken at every tick, and never without a reason. It responds within an instruction and a bus access.
+    // The core was woken at every tick, and never without a reason. It responds soon.
     assert!(said("ticks") > 500 && said("nothing") == 0, "{outcome:#?}");
-    assert!((1..100).contains(&outcome.longest_latency), "{outcome:#?}");
+    assert!((1..=most_latency).contains(&outcome.longest_latency), "{outcome:#?}");
     near("x_again", -60 - said("origin"));
     near("y_again", 40);
     // The points of the path are reached to the last bit, and none is late: 50 counts there, 50 back.
@@ -120,7 +123,7 @@ fn show(firmware: &Firmware, outcome: &Outcome) {
 #[test]
 fn long_prop_a_riscv_works_the_stage_through_its_driver_however_slow_its_bus() {
     let driver = driver(MACHINE);
-    let firmware = Firmware::build(&driver);
+    let firmware = Firmware::build(&driver, &Core::picorv32(&driver));
     // This fits a small memory; the compiler's version changes it by some hundred bytes.
     assert!(
         firmware.text < 20_000 && firmware.data < 256,
@@ -129,11 +132,24 @@ fn long_prop_a_riscv_works_the_stage_through_its_driver_however_slow_its_bus() {
         firmware.data
     );
     for seed in seeds() {
-        let mut system = System::new(&driver);
+        let mut system = System::new(&driver, Core::picorv32(&driver));
         let outcome = run(&mut system, &firmware, seed);
         show(&firmware, &outcome);
-        check(&system, &outcome);
+        check(&system, &outcome, 100);
     }
+}
+
+/// The same program on a VexRiscv in a SoC of LiteX, with the stage as the package's module adds it.
+#[test]
+fn lockstep_a_soc_of_litex_works_the_stage_through_its_driver() {
+    let driver = driver(MACHINE);
+    let core = Core::litex(&driver);
+    let firmware = Firmware::build(&driver, &core);
+    let mut system = System::new(&driver, core);
+    let outcome = run(&mut system, &firmware, 0);
+    show(&firmware, &outcome);
+    // Its handler is in C when it says so, behind caches.
+    check(&system, &outcome, 250);
 }
 
 /// A comment in the machine file makes another checksum: the program reads that of the hardware, and touches nothing.
@@ -141,7 +157,9 @@ fn long_prop_a_riscv_works_the_stage_through_its_driver_however_slow_its_bus() {
 fn lockstep_a_riscv_with_the_driver_of_another_machine_file_refuses_the_stage() {
     let [hardware, other] = [driver(MACHINE), driver(&format!("{MACHINE}# after the tuning\n"))];
     let checksum = |driver: &Driver| i64::from(driver.machine.link.unwrap().machine_crc as i32);
-    let outcome = System::new(&hardware).run(&Firmware::build(&other), 0, MOST_CLOCKS, &mut |_, _| ());
+    let core = Core::picorv32(&hardware);
+    let firmware = Firmware::build(&other, &core);
+    let outcome = System::new(&hardware, core).run(&firmware, 0, MOST_CLOCKS, &mut |_, _| ());
     assert_eq!(
         (outcome.results["found"], outcome.results["wanted"]),
         (checksum(&hardware), checksum(&other))

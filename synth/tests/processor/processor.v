@@ -1,7 +1,7 @@
 // A RISC-V core with its memory, a console, and a bridge to an Avalon-MM agent: the smallest system on a programmable chip.
 //
 //   picorv32 ─► decoder ─┬─ 0x0…    RAM, 2 clocks
-//                        ├─ 0x1…    console: word 0 takes a byte, word 1 the exit status
+//                        ├─ 0x1…    console: takes a byte
 //                        └─ STAGE   bridge ─► Avalon-MM host
 //
 // The bridge models an interconnect. It posts one write, so that the core continues before the agent has it; a read waits until
@@ -19,7 +19,6 @@ module processor #(
     input  wire [31:0]             load_data,
     input  wire [15:0]             seed,
     output reg                     console_valid,
-    output reg                     end_valid,
     output reg  [31:0]             console_data,
     output wire                    stopped,
     output wire                    in_interrupt,
@@ -77,7 +76,6 @@ module processor #(
     always @(posedge clk) begin
         mem_ready <= 1'b0;
         console_valid <= 1'b0;
-        end_valid <= 1'b0;
         if (load) ram[load_word] <= load_data;
         if (rst) stray <= 1'b0;
         else if (request) begin
@@ -90,8 +88,7 @@ module processor #(
                 if (mem_wstrb[3]) ram[mem_addr[14:2]][31:24] <= mem_wdata[31:24];
             end else if (of_console) begin
                 mem_ready <= 1'b1;
-                console_valid <= writes && !mem_addr[2];
-                end_valid <= writes && mem_addr[2];
+                console_valid <= writes;
                 console_data <= mem_wdata;
             end else if (of_stage) begin
                 mem_ready <= bridge_ready;

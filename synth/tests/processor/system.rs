@@ -1,29 +1,21 @@
 //! Simulates the stage with a core on its bus and a machine at its pins, and the model of the stage beside it.
 //!
 //! ```text
-//!  picorv32 ─► bridge ─► avs_* ─┬─► stage (Verilog) ─┬─► gates, drive_enable, brake_release ─► plants ─┐
+//!      core ─► avs_* or wb_* ───┬─► stage (Verilog) ─┬─► gates, drive_enable, brake_release ─► plants ─┐
 //!                               └─► stage (model) ───┴─► every output equal, in every clock            │
 //!                                                        a, b, z, home, drive_fault_n ◄────────────────┘
 //! ```
 
-use crate::driver::support::{Driver, run, stage};
-use posicast_blocks::component::Component;
-use posicast_blocks::composition::Composed;
-use posicast_blocks::{ClockedBlock, Direction, Port};
+use super::core::Core;
+use crate::driver::support::{Driver, run};
+use posicast_blocks::{ClockedBlock, Direction};
 use posicast_machine::machine_file::Machine;
 use posicast_machine::plant::axis::{AxisPlant, DrivePins, PlantOptions};
-use posicast_testbench::blocks::Sources;
-use posicast_testbench::component::ComponentBlock;
 use posicast_testbench::verilator::{Verilated, VerilogSource};
 use std::collections::BTreeMap;
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Name of the stage's top module.
-const STAGE: &str = "slide_stage";
-/// Its address for the core.
-const STAGE_BASE: &str = "0x40000000u";
 /// Size of the core's memory in bytes.
 const RAM_BYTES: u32 = 32_768;
 /// Counts at which the simulated encoders have their index, and from which on the home switch of X is pressed.
@@ -31,19 +23,6 @@ pub(super) const INDEX_AT: i64 = 22;
 pub(super) const HOME_FROM: i64 = 30;
 const ENCODER: [&str; 3] = ["a", "b", "z"];
 const DRIVE: [&str; 6] = ["a_high", "a_low", "b_high", "b_low", "drive_enable", "brake_release"];
-/// Ports of the processor that the test sees: name, direction, width.
-const CORE_PORTS: [(&str, Direction, u32); 9] = [
-    ("load", Direction::Input, 1),
-    ("load_word", Direction::Input, 13),
-    ("load_data", Direction::Input, 32),
-    ("seed", Direction::Input, 16),
-    ("console_valid", Direction::Output, 1),
-    ("end_valid", Direction::Output, 1),
-    ("console_data", Direction::Output, 32),
-    ("stopped", Direction::Output, 1),
-    ("in_interrupt", Direction::Output, 1),
-];
-
 /// A program for the core.
 pub(super) struct Firmware {
     words: Vec<u32>,
@@ -63,7 +42,7 @@ fn sizes(file: &Path) -> [u32; 3] {
 
 impl Firmware {
     /// Compiles the generated driver with its start code and linker script, and the program of this test.
-    pub(super) fn build(driver: &Driver) -> Self {
+    pub(super) fn build(driver: &Driver, core: &Core) -> Self {
         let bare_metal = driver.path().join("bare_metal");
         let program = driver.path().join("firmware.elf");
         let gcc = || {
@@ -78,7 +57,7 @@ impl Firmware {
             ])
             // These are the Makefile's options for memory.c.
             .args(["-Wall", "-Wextra", "-Werror", "-fno-tree-loop-distribute-patterns"])
-            .arg(format!("-DSTAGE_BASE={STAGE_BASE}"))
+            .args(&core.options)
             .arg("-I")
             .arg(driver.path().join("inc"));
             gcc
@@ -91,12 +70,8 @@ impl Firmware {
             files.push((name, sizes(&object)[0]));
         }
         run(gcc()
-            .args([
-                "-nostartfiles",
-                "-nostdlib",
-                "-Wl,--gc-sections",
-                "-Wl,--defsym=RAM_BASE=0",
-            ])
+            .args(["-nostartfiles", "-nostdlib", "-Wl,--gc-sections"])
+            .arg(format!("-Wl,--defsym=RAM_BASE={}", core.ram_base))
             .arg(format!("-Wl,--defsym=RAM_BYTES={RAM_BYTES}"))
             .arg("-T")
             .arg(bare_metal.join("link.ld"))
@@ -126,74 +101,8 @@ impl Firmware {
     }
 }
 
-fn here(name: &str) -> PathBuf {
+pub(super) fn here(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/processor").join(name)
-}
-
-/// Returns the core's Verilog, from the Python package of the tests.
-fn core_file() -> PathBuf {
-    let python = Path::new(env!("CARGO_MANIFEST_DIR")).join("../.venv/bin/python");
-    assert!(
-        python.exists(),
-        "{} is missing: scripts/install-tools makes it",
-        python.display()
-    );
-    let said = run(Command::new(python).args([
-        "-c",
-        "import pythondata_cpu_picorv32 as core; print(core.data_location)",
-    ]));
-    Path::new(said.trim()).join("picorv32.v")
-}
-
-/// Returns the module that connects processor and stage. Its ports are the stage's pins, its bus to observe, and the
-/// test's side of the processor.
-fn joined(ports: &[Port]) -> (String, Vec<Port>) {
-    let port = |name: &str, direction, width| Port {
-        name: name.to_owned(),
-        direction,
-        width,
-        signed: false,
-    };
-    let mut seen = vec![port("rst", Direction::Input, 1)];
-    seen.extend(CORE_PORTS.map(|(name, direction, width)| port(name, direction, width)));
-    for other in ports.iter().filter(|port| port.name != "rst") {
-        let direction = if other.name.starts_with("avs_") {
-            Direction::Output
-        } else {
-            other.direction
-        };
-        seen.push(port(&other.name, direction, other.width));
-    }
-    let mut text = String::from("`default_nettype none\nmodule system (\n    input wire clk");
-    for port in &seen {
-        let direction = if port.direction == Direction::Input {
-            "input"
-        } else {
-            "output"
-        };
-        let _ = write!(text, ",\n    {direction} wire [{}:0] {}", port.width - 1, port.name);
-    }
-    text.push_str("\n);\n");
-    let mut instance = |module: &str, parameters: &str, names: &mut dyn Iterator<Item = &str>| {
-        let connected: Vec<String> = names.map(|name| format!(".{name}({name})")).collect();
-        let _ = writeln!(
-            text,
-            "    {module} {parameters}{module}_0 (.clk(clk), {});",
-            connected.join(", ")
-        );
-    };
-    let bus = seen
-        .iter()
-        .map(|port| port.name.as_str())
-        .filter(|name| name.starts_with("avs_"));
-    let own = ["rst", "irq"]
-        .into_iter()
-        .chain(CORE_PORTS.iter().map(|(name, ..)| *name));
-    let bits = ports.iter().find(|port| port.name == "avs_address").unwrap().width;
-    instance("processor", &format!("#(.ADDRESS_BITS({bits})) "), &mut own.chain(bus));
-    instance(STAGE, "", &mut ports.iter().map(|port| port.name.as_str()));
-    text.push_str("endmodule\n");
-    (text, seen)
 }
 
 /// Accesses of the bus in a step of the program.
@@ -225,7 +134,7 @@ pub(super) struct Outcome {
 /// The core, the stage, its model and the machine.
 pub(super) struct System {
     device: Verilated,
-    model: Composed,
+    core: Core,
     plants: Vec<AxisPlant>,
     places: Places,
     inputs: Vec<u64>,
@@ -241,17 +150,22 @@ struct Places {
     drive: Vec<[usize; 6]>,
     /// For each of the model's inputs, the system's output if the core drives it, or else the system's input.
     model_input: Vec<Result<usize, usize>>,
-    model_output: Vec<usize>,
+    /// For each of the model's outputs, the system's, except those that the system does not have.
+    model_output: Vec<Option<usize>>,
 }
 
 impl Places {
-    fn new(machine: &Machine, seen: &[Port], ports: &[Port]) -> Self {
+    fn new(machine: &Machine, core: &Core) -> Self {
         let places_of = |direction| -> BTreeMap<String, usize> {
-            let these = seen.iter().filter(|port| port.direction == direction).enumerate();
-            these.map(|(place, port)| (port.name.clone(), place)).collect()
+            let these = core.seen.iter().filter(|port| port.direction == direction);
+            let names = these.map(|port| port.name.strip_prefix(core.prefix).unwrap_or(&port.name));
+            names
+                .enumerate()
+                .map(|(place, name)| (name.to_owned(), place))
+                .collect()
         };
         let (input, output) = (places_of(Direction::Input), places_of(Direction::Output));
-        let of_model = |direction| ports.iter().filter(move |port| port.direction == direction);
+        let of_model = |direction| core.ports.iter().filter(move |port| port.direction == direction);
         let of_axis = |axis: &str, pin: &str| format!("{axis}_{pin}");
         let axes = || machine.axes.iter().map(|axis| axis.name.as_str());
         Self {
@@ -264,7 +178,9 @@ impl Places {
             model_input: of_model(Direction::Input)
                 .map(|port| output.get(&port.name).copied().ok_or_else(|| input[&port.name]))
                 .collect(),
-            model_output: of_model(Direction::Output).map(|port| output[&port.name]).collect(),
+            model_output: of_model(Direction::Output)
+                .map(|port| (!core.unseen.contains(&port.name.as_str())).then(|| output[&port.name]))
+                .collect(),
             input,
             output,
         }
@@ -273,27 +189,19 @@ impl Places {
 
 impl System {
     /// Builds the driver's machine with a core, with all lines at their healthy levels.
-    pub(super) fn new(driver: &Driver) -> Self {
+    pub(super) fn new(driver: &Driver, core: Core) -> Self {
         let machine = &driver.machine;
-        let component = Component::stage(&stage(machine).config).unwrap();
-        let block = ComponentBlock::new(component.clone(), STAGE, "xy");
-        let ports = component.composition().ports();
-        let (text, seen) = joined(ports);
-        let system = driver.path().join("system.v");
-        std::fs::write(&system, text).unwrap();
-        let sources = Sources::write(&block).unwrap();
-        let files = [sources.files(), &[system, here("processor.v"), core_file()]].concat();
         let source = VerilogSource {
-            files: &files,
-            top: "system",
-            ports: &seen,
+            files: &core.files,
+            top: core.top,
+            ports: &core.seen,
         };
         let options = PlantOptions {
             index_at: INDEX_AT,
             ..PlantOptions::default()
         };
         let plant = |axis| AxisPlant::new(axis, &machine.clock, &options).unwrap();
-        let places = Places::new(machine, &seen, ports);
+        let places = Places::new(machine, &core);
         // High is the healthy level of every line except reset, encoders and home switches.
         let is_healthy = |name: &str| name.ends_with("_n") || name.ends_with("ready") || name.ends_with("locked");
         let mut inputs = vec![0; places.input.len()];
@@ -302,11 +210,11 @@ impl System {
         }
         Self {
             device: Verilated::build(&source, 1).unwrap(),
-            model: component.model(1),
             plants: machine.axes.iter().map(plant).collect(),
             outputs: vec![0; places.output.len()],
             inputs,
             places,
+            core,
         }
     }
 
@@ -334,22 +242,20 @@ impl System {
             Err(line) => self.inputs[line],
         });
         let (inputs, mut expected) = (of_model.collect::<Vec<_>>(), vec![0; self.places.model_output.len()]);
-        self.model.step(&inputs, &mut expected).unwrap();
-        let actual: Vec<u64> = self
-            .places
-            .model_output
-            .iter()
-            .map(|place| self.outputs[*place])
-            .collect();
-        if actual != expected {
-            let names = self.places.model_output.iter().map(|place| {
-                let named = self.places.output.iter().find(|(_, other)| *other == place);
-                named.unwrap().0
-            });
-            let wrong: Vec<_> = names
-                .zip(actual.iter().zip(&expected))
-                .filter(|(_, (a, e))| a != e)
-                .collect();
+        self.core.model.step(&inputs, &mut expected).unwrap();
+        let differs = |(place, expected): (&Option<usize>, &u64)| place.is_some_and(|at| self.outputs[at] != *expected);
+        if self.places.model_output.iter().zip(&expected).any(differs) {
+            let named = self
+                .places
+                .model_output
+                .iter()
+                .zip(&expected)
+                .filter_map(|(place, expected)| {
+                    let place = (*place)?;
+                    let (name, _) = self.places.output.iter().find(|(_, other)| **other == place)?;
+                    Some((name, self.outputs[place], *expected))
+                });
+            let wrong: Vec<_> = named.filter(|(_, actual, expected)| actual != expected).collect();
             panic!("clock {now}: Verilog and model show {wrong:?}");
         }
         for (plant, places) in self.plants.iter_mut().zip(&self.places.drive) {
@@ -367,7 +273,7 @@ impl System {
     }
 
     /// Loads the program under reset and runs it until it ends, for at most this number of clocks. `seed` is that of
-    /// the bridge's waits. `surroundings` sets lines in every clock; its argument is the step of the program.
+    /// the bridge's waits, where it has some. `surroundings` sets lines in every clock; its argument is the step of the program.
     pub(super) fn run(
         &mut self,
         firmware: &Firmware,
@@ -377,7 +283,9 @@ impl System {
     ) -> Outcome {
         let place = |name: &str| self.places.input[name];
         let [rst, load, load_word, load_data] = ["rst", "load", "load_word", "load_data"].map(place);
-        self.inputs[place("seed")] = seed.into();
+        if let Some(place) = self.places.input.get("seed") {
+            self.inputs[*place] = seed.into();
+        }
         (self.inputs[rst], self.inputs[load]) = (1, 1);
         for (word, data) in firmware.words.iter().enumerate() {
             self.inputs[load_word] = word as u64;
@@ -402,15 +310,14 @@ struct Watch {
     outcome: Outcome,
     line: String,
     /// Positions of outputs.
-    stopped: usize,
-    console_valid: usize,
-    end_valid: usize,
-    console_data: usize,
+    stopped: Option<usize>,
+    console: [usize; 2],
     in_interrupt: usize,
     irq: usize,
     tick: usize,
-    avs_read: usize,
-    avs_write: usize,
+    /// With the level that each has during the access.
+    read: Vec<(usize, bool)>,
+    write: Vec<(usize, bool)>,
     /// Clock since which the stage's interrupt waits for the core.
     asked_at: Option<u64>,
 }
@@ -418,21 +325,20 @@ struct Watch {
 impl Watch {
     fn new(system: &System) -> Self {
         let place = |name: &str| system.places.output[name];
+        let levels = |of: &[(&str, bool)]| of.iter().map(|(name, level)| (place(name), *level)).collect();
         Self {
             outcome: Outcome {
                 steps: vec![Step::default()],
                 ..Outcome::default()
             },
             line: String::new(),
-            stopped: place("stopped"),
-            console_valid: place("console_valid"),
-            end_valid: place("end_valid"),
-            console_data: place("console_data"),
+            stopped: system.places.output.get("stopped").copied(),
+            console: system.core.console.map(place),
             in_interrupt: place("in_interrupt"),
             irq: place("irq"),
             tick: place("tick"),
-            avs_read: place("avs_read"),
-            avs_write: place("avs_write"),
+            read: levels(system.core.read),
+            write: levels(system.core.write),
             asked_at: None,
         }
     }
@@ -445,7 +351,7 @@ impl Watch {
     fn look(&mut self, system: &System, now: u64) -> Option<Outcome> {
         let is_high = |place: usize| system.outputs[place] != 0;
         assert!(
-            !is_high(self.stopped),
+            !self.stopped.is_some_and(is_high),
             "clock {now}: the core has trapped, in {:#?}",
             self.outcome
         );
@@ -456,24 +362,24 @@ impl Watch {
         } else if is_high(self.irq) {
             self.asked_at.get_or_insert(now);
         }
-        let accesses = u64::from(is_high(self.avs_read)) + u64::from(is_high(self.avs_write));
+        let are_so =
+            |levels: &[(usize, bool)]| u64::from(levels.iter().all(|(place, level)| is_high(*place) == *level));
+        let (reads, writes) = (are_so(&self.read), are_so(&self.write));
         if let Some(step) = self.outcome.steps.last_mut() {
             step.clocks += 1;
             step.ticks += u64::from(is_high(self.tick));
-            step.reads += u64::from(is_high(self.avs_read));
-            step.writes += u64::from(is_high(self.avs_write));
-            step.in_interrupt += if in_interrupt { accesses } else { 0 };
+            step.reads += reads;
+            step.writes += writes;
+            step.in_interrupt += if in_interrupt { reads + writes } else { 0 };
         }
-        if is_high(self.console_valid) {
-            self.character(char::from(system.outputs[self.console_data] as u8));
+        let [valid, data] = self.console;
+        if is_high(valid) {
+            self.character(char::from(system.outputs[data] as u8));
         }
-        if !is_high(self.end_valid) {
-            return None;
-        }
-        let status = system.outputs[self.console_data];
+        let status = self.outcome.results.remove("end")?;
         assert_eq!(status, 0, "{:#?}", self.outcome);
         self.outcome.clocks = now;
-        self.outcome.compared = now * system.places.model_output.len() as u64;
+        self.outcome.compared = now * system.places.model_output.iter().flatten().count() as u64;
         Some(std::mem::take(&mut self.outcome))
     }
 

@@ -1,8 +1,11 @@
-/* Where the core begins, and where it goes for an interrupt: addresses 0 and 16. Linked before the driver's start.S. */
+/* Where the core begins, and where it goes for an interrupt: the first address of the memory, and 16 after it. Linked before the driver's start.S. */
+#include CORE
+
     .section .text.start
-    j _start
+    j begin
     .balign 16
-    /* The registers that a C function may change; the core keeps the return address, and no second interrupt comes before retirq. */
+handler:
+    /* The registers that a C function may change; the core keeps the return address, and no second interrupt comes before it returns. */
     addi sp, sp, -64
     sw ra, 0(sp)
     sw t0, 4(sp)
@@ -38,4 +41,7 @@
     lw a6, 56(sp)
     lw a7, 60(sp)
     addi sp, sp, 64
-    .insn r 0x0b, 0, 2, x0, x0, x0      /* retirq */
+    RETURN_FROM_INTERRUPT
+begin:
+    SET_HANDLER
+    j _start
