@@ -20,6 +20,7 @@ mod optimal;
 mod plant_in_loop;
 mod prop_joint;
 mod prop_shapers;
+mod rate_tables;
 mod segments;
 mod shaper_handover;
 mod sliding_mode;
