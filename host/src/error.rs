@@ -37,7 +37,7 @@ pub enum LinkError {
     Line(#[from] std::io::Error),
     /// No reply, or only damaged ones.
     #[error(
-        "no reply in {attempts} attempts of {} ms, {damaged} damaged frames: is the stage powered, are the wires and the speed of the line right?{}",
+        "no reply in {attempts} attempts of {} ms, {damaged} damaged frames: is the hardware powered, are the wires and the speed of the line right?{}",
         .timeout.as_millis(), if *.written { " A write may have been executed." } else { "" }
     )]
     NoReply {

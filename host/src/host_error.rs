@@ -60,7 +60,9 @@ pub enum HostError {
         expected: u32,
     },
     /// The stage has no such register.
-    #[error("this stage has no register {0}: its machine file lacks the part that has it ([axis.trace] for a trace)")]
+    #[error(
+        "this hardware has no register {0}: its machine file lacks the part that has it ([axis.trace] for a trace)"
+    )]
     NoRegister(String),
     /// An axis has a fault, or stops because of one.
     #[error("axis {axis} is in {state} because of {causes}: remove the cause, then clear the fault")]
@@ -94,7 +96,7 @@ pub enum HostError {
         remedy: &'static str,
     },
     /// Time stands still in the stage.
-    #[error("the registers answer, but their time stands still: does the stage have a clock, or is it in reset?")]
+    #[error("the registers answer, but their time stands still: does the hardware have a clock, or is it in reset?")]
     Standstill,
     /// A move does not fit the machine.
     #[error("axis {axis}: {source}")]

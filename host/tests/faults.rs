@@ -141,7 +141,7 @@ fn a_line_without_a_bridge_is_an_error_that_says_what_to_look_for() {
     let mut link = Link::new(io::Cursor::new(vec![0_u8; 0]), FAST);
     let error = link.read(0, 1).unwrap_err().to_string();
     assert!(
-        error.starts_with("no reply in 20 attempts of 0 ms, 0 damaged frames: is the stage powered"),
+        error.starts_with("no reply in 20 attempts of 0 ms, 0 damaged frames: is the hardware powered"),
         "{error}"
     );
 }

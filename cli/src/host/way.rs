@@ -51,8 +51,8 @@ impl<'a> Way<'a> {
         let file = path.display();
         let Some(link) = machine.link else {
             return Err(refused(
-                "add [link] with `baud = 921_600` (or `line = \"spi\"` and its sck_hz), then generate and build the stage anew",
-                format!("{file}: the machine has no [link]: its stage has no line to a host"),
+                "add [link] with `baud = 921_600` (or `line = \"spi\"` and its sck_hz), then generate and build the hardware anew",
+                format!("{file}: the machine has no [link]: its hardware has no line to a host"),
             ));
         };
         match (spi, link.line) {
@@ -60,11 +60,11 @@ impl<'a> Way<'a> {
             (Some(device), LinkLine::Spi { sck_hz }) => Self::spi((port, device), (&link, sck_hz), machine),
             (Some(_), LinkLine::Uart { .. }) => Err(refused(
                 "give the serial port, such as /dev/ttyUSB0",
-                format!("{port}: the stage of {file} has a serial line, not SPI"),
+                format!("{port}: the hardware of {file} has a serial line, not SPI"),
             )),
             (None, LinkLine::Spi { .. }) => Err(refused(
                 "give the SPI device, such as spi:///dev/spidev0.0",
-                format!("{port}: the stage of {file} has SPI, not a serial line"),
+                format!("{port}: the hardware of {file} has SPI, not a serial line"),
             )),
         }
     }

@@ -129,7 +129,7 @@ fn cli_host_names_what_is_missing() {
         &file,
         &["status"],
         3,
-        "3000000 baud: no reply in 5 attempts of 5 ms, 0 damaged frames: is the stage powered, are the wires",
+        "3000000 baud: no reply in 5 attempts of 5 ms, 0 damaged frames: is the hardware powered, are the wires",
     );
     fails(
         &port,
