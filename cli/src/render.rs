@@ -18,7 +18,7 @@ mod verify;
 pub(crate) use bitstream::bitstream;
 pub(crate) use compare::compare;
 pub(crate) use design::design;
-pub(crate) use generate::{generate, list};
+pub(crate) use generate::{block, generate, list, list_block};
 pub(crate) use identify::identify;
 pub(crate) use simulate::simulate;
 pub(crate) use synth::synth;

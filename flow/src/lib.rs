@@ -6,6 +6,7 @@
 mod allowance;
 mod bench;
 pub mod bitstream;
+pub mod block_kit;
 mod blocks;
 mod bus_files;
 pub mod campaign;

@@ -33,6 +33,9 @@ const BUS: [(&str, &str); 2] = pages!["axi_lite_bridge" "wishbone_bridge"];
 /// Datasheets of machines with an inline shaper.
 const INLINE: [(&str, &str); 4] = pages!["inline" "inline_axis" "pulse_counter" "step_generator"];
 
+/// Datasheets of blocks that no machine has.
+const ALONE: [(&str, &str); 1] = pages!["cascade"];
+
 /// Hardware of a machine in addition to the shapers of its top module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum BuiltBlocks {
@@ -79,6 +82,32 @@ pub fn files(built: BuiltBlocks, bus: Option<BridgedBus>) -> Vec<(String, String
         .chain(INLINE.iter().filter(|_| is_inline))
         .chain(registers)
         .collect();
+    with_links(&pages)
+}
+
+/// The datasheets of a block alone: its own, if it has one, and those of registers and buses if it has registers.
+pub fn of_block(name: &str, has_registers: bool) -> Vec<(String, String)> {
+    let all = (SHAPER
+        .iter()
+        .chain(&COMPONENTS)
+        .chain(&STAGE)
+        .chain(&LINK)
+        .chain(&SPI_LINK))
+    .chain(&BUS)
+    .chain(&INLINE)
+    .chain(&ALONE);
+    let is_bus = |page: &str| page == "registers" || BUS.iter().any(|(bus, _)| *bus == page);
+    let mut pages: Vec<_> = all
+        .filter(|(page, _)| *page == name || (has_registers && is_bus(page)))
+        .collect();
+    // A page may be one of several kinds of machines.
+    pages.sort_unstable();
+    pages.dedup();
+    with_links(&pages)
+}
+
+/// The pages as files, with links to each other.
+fn with_links(pages: &[&(&str, &str)]) -> Vec<(String, String)> {
     let is_there = |name: &str| pages.iter().any(|(page, _)| *page == name);
     let file = |(name, text): &&(&str, &str)| (format!("{FOLDER}/{name}.md"), with_links_to(text, is_there));
     pages.iter().map(file).collect()

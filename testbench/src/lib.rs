@@ -20,6 +20,7 @@
 //! - [`replay`] plays a recording into model and RTL.
 //! - [`named_mutant`] replaces a text of the Verilog by another: a deliberate fault.
 //! - [`wave`] writes waveforms; the crate `wavecmp` compares two of them.
+//! - [`vectors`] writes recorded clocks and a bench in Verilog that plays them, for people who have a block and no posicast.
 //! - [`yosys`] runs scripts of Yosys and ABC.
 //! - [`wording`] writes counts and times for people.
 
@@ -65,6 +66,7 @@ pub mod stimuli;
 mod tool;
 pub mod trace;
 pub mod uart_bridge;
+pub mod vectors;
 pub mod verilator;
 pub mod wave;
 pub mod wishbone_bridge;

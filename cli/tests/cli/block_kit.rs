@@ -101,23 +101,20 @@ fn cli_block_kit_of_a_vibrationless_axis_has_its_half_sums() {
     let file = scratch.path().join("slow.toml");
     let mode = |hz: &str| format!("[[axis.mode]]\nfrequency_hz = {hz}\ndamping = 0\n");
     let text = format!(
-        "name = \"slow\"\n[clock]\nfrequency_hz = 50_000_000\nsample_hz = 1000\n[[axis]]\nname = \"x\"\n\
+        "name = \"slow\"\n[clock]\nfrequency_hz = 50_000_000\nsample_hz = 1000\n[[axis]]\nname = \"x\"\ncounts_per_unit = 1000\n\
          [axis.shaper]\nkind = \"vibrationless\"\norder = 1\n{}{}",
         mode("8.0"),
         mode("16.0")
     );
     std::fs::write(&file, &text).unwrap();
     let (_scratch, folder) = kit(&[file.to_str().unwrap(), "--block", "cascade"]);
-    let rom = std::fs::read_to_string(folder.join("rtl/slow_x_stage_delays.v"));
-    let rom = rom
-        .or_else(|_| std::fs::read_to_string(folder.join("rtl/stage_delays.v")))
-        .unwrap();
-    assert!(rom.contains("'d63") && rom.contains("'d31"), "{rom}");
+    let rom = std::fs::read_to_string(folder.join("rtl/slow_x_stage_delays.v")).unwrap();
+    assert!(rom.contains("// 63 samples") && rom.contains("// 31 samples"), "{rom}");
     let ran = make(&folder, "bench");
     assert!(ran.status.success(), "{}", said(&ran));
     let readme = std::fs::read_to_string(folder.join("README.md")).unwrap();
-    // |cos(pi/2 · f · 2 · 63/1000)| at 8 Hz, times that of the other half sum.
-    assert!(readme.contains("at 8 Hz") && readme.contains("at 16 Hz"), "{readme}");
+    // |cos(pi f 0.063) cos(pi f 0.031)|.
+    assert!(readme.contains("0.894 % at 8 Hz, 1.256 % at 16 Hz"), "{readme}");
 
     std::fs::write(&file, text.replace("\"vibrationless\"\norder = 1", "\"zv\"")).unwrap();
     posicast()

@@ -179,7 +179,10 @@ fn cli_inline_with_a_line_is_generated_with_its_registers_and_without_one_nothin
     generate(&example("inline.toml"), &without).success();
     let (_scratch, file) = scratch(&linked());
     let output = folder.path().join("router");
-    generate(&file, &output).success();
+    let said = generate(&file, &output).success();
+    said.stdout(predicate::str::contains(
+        "router_inline (the inline shaper), router_link (the inline shaper with its serial line)",
+    ));
     let top = std::fs::read_to_string(output.join("rtl/router_link.v")).unwrap();
     for pin in ["uart_rx", "uart_tx", "irq", "x_step_in", "drive_enable", "settled"] {
         assert!(top.contains(pin), "{pin}");

@@ -11,6 +11,7 @@ mod verify;
 
 mod bad_input;
 mod bitstream;
+mod block_kit;
 mod buses;
 mod campaign;
 mod command;

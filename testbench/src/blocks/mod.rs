@@ -30,7 +30,7 @@ pub use self::library::{library, library_named, library_sizes};
 pub use self::reached::{Reach, ReachedCount};
 pub use self::registry::{
     AreaBudget, AreaRow, BenchSizes, BlockMutant, BlockTrials, SmallBench, Trial, areas, benches, proofs,
-    proofs_by_block, proofs_named, small_benches, trials,
+    proofs_by_block, proofs_named, proofs_of, small_benches, trials,
 };
 pub use self::sources::{Sources, rusthdl};
 
@@ -232,6 +232,20 @@ pub fn check(
 ) -> Result<LockstepReport, Error> {
     let mut stimuli = block.stimuli(cycles, seed);
     check_with(block, device, stimuli.as_mut(), (cycles, seed), progress)
+}
+
+/// As [`check`], with every clock shown to `watch`, and without progress.
+///
+/// # Errors
+/// As [`lockstep::run`].
+pub(crate) fn check_every_clock(
+    block: &dyn Block,
+    device: &mut dyn Device,
+    (cycles, seed): (u64, u64),
+    watch: &mut dyn FnMut(&Clock<'_>) -> ControlFlow<()>,
+) -> Result<LockstepReport, Error> {
+    let mut stimuli = block.stimuli(cycles, seed);
+    run(block, device, stimuli.as_mut(), (cycles, seed), watch, &mut |_| {})
 }
 
 /// As [`check`], with other stimuli.

@@ -278,6 +278,15 @@ pub fn proofs_by_block() -> Result<Vec<(&'static str, Task)>, Error> {
     joined(|row| Ok((row.proofs)()?.into_iter().map(|task| (row.name, task)).collect()))
 }
 
+/// Returns the proofs of the block of this name; there may be none.
+///
+/// # Errors
+/// As [`proofs`].
+pub fn proofs_of(block: &str) -> Result<Vec<Task>, Error> {
+    let rows = REGISTRY.iter().filter(|row| row.name == block);
+    Ok(rows.map(|row| (row.proofs)()).collect::<Result<Vec<_>, _>>()?.concat())
+}
+
 /// Returns the proofs that use this property file; they all belong to one row.
 ///
 /// # Errors

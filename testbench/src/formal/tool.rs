@@ -157,22 +157,16 @@ impl<'a> Bench<'a> {
 
     /// Whether PDR proves all assertions together.
     fn pdr(&self) -> Result<bool, Error> {
-        let commands = format!("read_aiger asserts.aig; fold; strash; orpos; pdr -T {}", self.seconds());
-        Ok(self.abc(&commands)?.contains("Property proved"))
+        Ok(self.abc(&pdr_commands(self.seconds()))?.contains(PDR_PROVES))
     }
 
     /// Whether the assertions hold at the start, and in each clock after `clocks` clocks in which they did.
     fn induction(&self, clocks: u32) -> Result<bool, Error> {
-        let script = format!(
-            "read_ilang design.il\ndelete t:$cover\n\
-             sat -tempinduct -prove-asserts -set-assumes -maxsteps {clocks} -timeout {} formal_top\n",
-            self.seconds()
-        );
-        self.write("induction.ys", &script)?;
+        self.write("induction.ys", &induction_script(clocks, self.seconds()))?;
         let mut yosys = YOSYS.command_in(self.folder);
         yosys.arg("induction.ys");
         let output = YOSYS.output(&mut yosys, "proving by induction")?;
-        Ok(text(&output).contains("Induction step proven: SUCCESS!"))
+        Ok(text(&output).contains(INDUCTION_PROVES))
     }
 
     fn counterexample(&self, asserts: &[String]) -> Result<ProofVerdict, Error> {
@@ -240,6 +234,44 @@ impl<'a> Bench<'a> {
     fn seconds(&self) -> u64 {
         self.limit.as_secs().max(1)
     }
+}
+
+/// What ABC prints where PDR has proven everything, and Yosys where induction has.
+const PDR_PROVES: &str = "Property proved";
+const INDUCTION_PROVES: &str = "Induction step proven: SUCCESS!";
+
+fn pdr_commands(seconds: u64) -> String {
+    format!("read_aiger asserts.aig; fold; strash; orpos; pdr -T {seconds}")
+}
+
+fn induction_script(clocks: u32, seconds: u64) -> String {
+    format!(
+        "read_ilang design.il\ndelete t:$cover\n\
+         sat -tempinduct -prove-asserts -set-assumes -maxsteps {clocks} -timeout {seconds} formal_top\n"
+    )
+}
+
+/// A task as files for people who have Yosys and no posicast: those that [`run`] writes, and `prove.sh`, which proves the assertions within
+/// `limit`, or says that it did not.
+pub fn files(task: &Task, limit: Duration) -> Vec<(String, String)> {
+    let seconds = limit.as_secs().max(1);
+    let mut files = input_files(task, &[ASSERTS]);
+    let (prove, proves) = match task.engine {
+        Engine::Pdr => (format!("yosys-abc -c \"{}\"", pdr_commands(seconds)), PDR_PROVES),
+        Engine::Induction { clocks } => {
+            files.push(("induction.ys".to_owned(), induction_script(clocks, seconds)));
+            ("yosys induction.ys".to_owned(), INDUCTION_PROVES)
+        }
+    };
+    let (name, size) = (task.name, task.size.replace('\'', ""));
+    let script = format!(
+        "#!/bin/sh\n# Proves the assertions of properties.sv for every input, without a bound: {}.\n# It needs Yosys.\nset -eu\n\
+         cd \"$(dirname \"$0\")\"\nyosys -q prepare.ys\n{prove} > prove.log\nif grep -q '{proves}' prove.log; then\n    \
+         echo 'proven: {name}, {size}'\nelse\n    echo 'not proven: {name}, {size}; see prove.log'\n    exit 1\nfi\n",
+        task.engine.name()
+    );
+    files.push(("prove.sh".to_owned(), script));
+    files
 }
 
 /// All that Yosys is given for a task, as file names and texts: the Verilog, the properties, the top that joins them, and the

@@ -11,12 +11,14 @@
 //! each part that cannot be built has its reason, a [`HardwareError`] with the key of the machine file to blame.
 
 mod axis;
+mod cascade;
 mod error;
 mod error_table;
 mod inline;
 mod stage;
 
 pub use axis::{AxisComponent, AxisHardware, AxisLoop};
+pub use cascade::{CascadeHardware, cascade};
 pub use error::HardwareError;
 pub use error_table::departure_counts as error_table_departure_counts;
 pub use inline::{InlineFigures, InlineHardware};

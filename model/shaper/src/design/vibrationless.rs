@@ -95,14 +95,22 @@ const SEEDS: [&[Seed]; 4] = [
 /// [`JointError::Vibrationless`] for an order or bound that is not solved; [`DesignError`] for an invalid mode, or
 /// times beyond `f64`.
 pub fn design(mode: &Mode, order: u32, epsilon: f64) -> Result<ImpulseSequence, DesignError> {
+    half_sum_cascade(&half_sums_s(mode, order, epsilon)?)
+        .map_err(|cause| DesignError::no_sequence(ShaperKind::Vibrationless, mode, cause))
+}
+
+/// Delays of the half sums of one mode in seconds, as many as the order.
+///
+/// # Errors
+/// Those of [`design`].
+pub fn half_sums_s(mode: &Mode, order: u32, epsilon: f64) -> Result<Vec<f64>, DesignError> {
     DesignError::check_mode(mode)?;
     let cascade = optimum(order, epsilon)?;
     let half_sums = cascade
         .ratios
         .iter()
         .map(|ratio| 0.5 / (ratio * mode.damped_frequency_hz()));
-    half_sum_cascade(&half_sums.collect::<Vec<_>>())
-        .map_err(|cause| DesignError::no_sequence(ShaperKind::Vibrationless, mode, cause))
+    Ok(half_sums.collect())
 }
 
 /// Impulses of the half sums with these delays in seconds: `2^n` of weight `2^−n`, coincident ones merged.
