@@ -134,7 +134,12 @@ pub fn generate_block(options: &Options, observer: &dyn Observer) -> Result<Outc
     files.push(("Makefile".to_owned(), makefile(&top, &recorded, &proofs)));
     files.push((
         "README.md".to_owned(),
-        readme(block.as_ref(), &recorded, (&proofs, &notes), &buses),
+        readme(
+            (block.as_ref(), options.machine.is_some()),
+            &recorded,
+            (&proofs, &notes),
+            &buses,
+        ),
     ));
     for (path, text) in &files {
         package.add(path, text.as_bytes()).map_err(Failure::because)?;
@@ -296,9 +301,12 @@ fn on_buses(component: &ComponentBlock, alone: &[Module]) -> Result<Buses, Failu
                 .iter()
                 .any(|own| own.name == module.name && own.text == module.text)
         };
-        let path = |module: &Module| match beside(module) {
-            true => verilog::path(module),
-            false => format!("bus/{}.v", module.name),
+        let path = |module: &Module| {
+            if beside(module) {
+                verilog::path(module)
+            } else {
+                format!("bus/{}.v", module.name)
+            }
         };
         let files: String = modules.iter().map(|module| path(module) + "\n").collect();
         buses.files.push((format!("bus/{list}.f"), files));
@@ -350,14 +358,19 @@ fn makefile(top: &str, recorded: &Vectors, proofs: &[Proof]) -> String {
 }
 
 fn readme(
-    block: &dyn Block,
+    (block, modules_are_named): (&dyn Block, bool),
     recorded: &Vectors,
     (proofs, notes): (&[Proof], &[(&str, String)]),
     buses: &Buses,
 ) -> String {
     let (name, top) = (block.name(), block.top());
+    let datasheet = if datasheets::of_block(name, false).is_empty() {
+        "It has no datasheet: it is part of others, and the head of its Verilog says what it does."
+    } else {
+        "Its datasheet is in `docs/`."
+    };
     let mut text = format!(
-        "# {name}\n\nThe block `{name}` of posicast {}, {}: Verilog-2001, top module `{top}`. Its datasheet is in `docs/`.\n\n\
+        "# {name}\n\nThe block `{name}` of posicast {}, {}: Verilog-2001, top module `{top}`. {datasheet}\n\n\
          | where | what |\n|---|---|\n\
          | `rtl/` | the Verilog; `filelist.f` lists it for simulators, `{top}.qip` for Quartus |\n\
          | `bench/` | {} of stimuli and the outputs of the bit-exact model, and a bench that compares them in every clock: `make bench` |\n",
@@ -366,16 +379,23 @@ fn readme(
         counted(recorded.clocks, "clock"),
     );
     if !proofs.is_empty() {
-        text.push_str("| `formal/` | proofs for every input, without a bound, by Yosys: `make prove` |\n");
+        text.push_str("| `formal/` | proofs for every input, without a bound, by Yosys, about the copies of the Verilog there: `make prove` |\n");
     }
     if let [avalon, axi, wishbone] = buses.tops.as_slice() {
         let _ = writeln!(
             text,
             "| `bus/` | the block behind registers: `{avalon}` on Avalon-MM (`bus/avalon.f`), `{axi}` on AXI4-Lite (`bus/axi.f`), `{wishbone}` \
-             on Wishbone (`bus/wishbone.f`); paths are from this folder |\n| `driver/` | the registers as C header |"
+             on Wishbone (`bus/wishbone.f`); paths are from this folder. It may be built for more than `rtl/`, as for three channels in place of one, \
+             and `make` does not look at it |\n| `driver/`, `docs/` | the registers as C header, SVD, SystemRDL and page |"
         );
     }
     text.push_str("\n`make lint` shows that Verilator has no warning.\n");
+    if !modules_are_named {
+        text.push_str(
+            "\nThe names of the modules have no prefix. If they clash with others in your design, generate the block with a machine file: \
+             its modules then begin with `posicast_` or the machine's name.\n",
+        );
+    }
     if let Some((_, note)) = notes.iter().find(|(of, _)| *of == name) {
         let _ = writeln!(text, "\n{note}");
     }

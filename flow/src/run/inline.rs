@@ -159,7 +159,11 @@ impl InlineLoop<'_> {
             None if self.moved.fault => Check::new(name, false, "the axes stopped with a fault".to_owned()),
             None if !self.moved.settled => Check::new(name, false, "the axes were not settled at the end".to_owned()),
             None if nothing => Check::not_exercised(name, true, "no axis moved by a step"),
-            None => Check::new(name, true, format!("steps of the move, {}", all.join(", "))),
+            None => Check::new(
+                name,
+                true,
+                format!("steps of the move in the model, {}", all.join(", ")),
+            ),
         }
     }
 
