@@ -2,13 +2,12 @@
 //! output with the bit-exact model's, in every clock. Any simulator for Verilog-2005 runs it.
 
 use std::fmt::Write as _;
-use std::ops::ControlFlow;
 
-use posicast_blocks::{Direction, Port, StepError};
+use posicast_blocks::{Direction, Port};
 
 use crate::Error;
-use crate::blocks::{Block, check_every_clock};
-use crate::lockstep::{Clock, Device};
+use crate::blocks::Block;
+use crate::lockstep::Clock;
 
 /// Recorded clocks of a block, with the bench that plays them.
 #[derive(Debug, Clone)]
@@ -32,25 +31,30 @@ pub struct Vectors {
 /// # Errors
 /// [`Error::Step`] where the model stops.
 pub fn record(block: &dyn Block, clocks: u64, seed: u64) -> Result<Vectors, Error> {
-    let ports = block.model(seed).ports().to_vec();
+    let mut model = block.model(seed);
+    let ports = model.ports().to_vec();
     let (inputs, outputs): (Vec<&Port>, Vec<&Port>) = ports.iter().partition(|port| port.direction == Direction::Input);
-    let mut vectors = String::new();
+    let mut stimuli = block.stimuli(clocks, seed);
     let mut exercise = block.exercise();
-    let mut watch = |clock: &Clock<'_>| {
-        let words = inputs
-            .iter()
-            .zip(clock.inputs)
-            .chain(outputs.iter().zip(clock.expected));
+    let (mut given, mut shown) = (vec![0; inputs.len()], vec![0; outputs.len()]);
+    let mut vectors = String::new();
+    for time in 0..clocks {
+        stimuli.fill(&shown, &mut given);
+        let step = model.step(&given, &mut shown);
+        step.map_err(|source| Error::Step { clock: time, source })?;
+        let words = inputs.iter().zip(&given).chain(outputs.iter().zip(&shown));
         let bits: String = words.map(|(port, value)| bits_of(*value, port.width)).collect();
         let _ = writeln!(vectors, "{}", hexadecimal(&bits));
         if let Some(exercise) = &mut exercise {
-            exercise.observe(clock);
+            exercise.observe(&Clock {
+                time,
+                inputs: &given,
+                expected: &shown,
+                actual: &shown,
+                inside: model.composed(),
+            });
         }
-        ControlFlow::Continue(())
-    };
-    // The recorded outputs are the model's; what stands in for a device is a second model.
-    let mut twin = Twin(block.model(seed));
-    check_every_clock(block, &mut twin, (clocks, seed), &mut watch)?;
+    }
     let top = block.top();
     let (bench_name, vectors_name) = (format!("{top}_bench"), format!("{top}_vectors.hex"));
     Ok(Vectors {
@@ -63,20 +67,6 @@ pub fn record(block: &dyn Block, clocks: u64, seed: u64) -> Result<Vectors, Erro
             exercise.missing().into_iter().map(|(_, what)| what).collect()
         }),
     })
-}
-
-/// A model in the place of a device.
-struct Twin(Box<dyn posicast_blocks::ClockedBlock>);
-
-impl Device for Twin {
-    fn ports(&self) -> &[Port] {
-        self.0.ports()
-    }
-
-    fn step(&mut self, inputs: &[u64], outputs: &mut [u64], unknown: &mut [u64]) -> Result<(), StepError> {
-        unknown.fill(0);
-        self.0.step(inputs, outputs)
-    }
 }
 
 fn bits_of(value: u64, width: u32) -> String {

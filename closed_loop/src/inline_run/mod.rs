@@ -27,16 +27,12 @@ use posicast_testbench::lockstep::Device;
 use self::controller::Edge;
 use crate::stage_bench::AxisSample;
 use crate::stage_run::{
-    AxisFigures, Compared, Expected, STANDSTILL_TICKS, Shaping, StageRunError, commands, figures_of_move, plan_axis,
-    ringing_of_move, settle_ticks, stepped_move,
+    AxisFigures, COMPARED_CLOCKS, Compared, Expected, STANDSTILL_TICKS, Shaping, StageRunError, WORD_FRACTION,
+    commands, figures_of_move, plan_axis, ringing_of_move, settle_ticks, stepped_move,
 };
 
 /// Ticks before the move, in which the axes begin to follow.
 const START_TICKS: u64 = 20;
-/// Largest number of clocks in which model and Verilog are compared: about half a minute of Verilator.
-const COMPARED_CLOCKS: u64 = 24_000_000;
-/// Fraction bits of a command word.
-const WORD_FRACTION: u32 = 8;
 
 /// An inline shaper between a controller and the machine for which it was made.
 #[derive(Debug)]
@@ -161,8 +157,8 @@ impl<'a> InlineRun<'a> {
             stepped_move(
                 axis,
                 self.machine.clock.sample_hz,
-                plan,
-                (table, self.settle_ticks),
+                &commands(plan, self.settle_ticks),
+                table,
                 1.0,
             )
         })

@@ -115,13 +115,7 @@ pub(super) fn of_move(
         };
         let at_end = at_end.as_ref().unwrap_or(axis);
         let expected = match timed {
-            None => stepped_move(
-                at_end,
-                machine.clock.sample_hz,
-                &planned,
-                (&table, ticks),
-                frequency_factor,
-            )?,
+            None => stepped_move(at_end, machine.clock.sample_hz, &commands, &table, frequency_factor)?,
             Some(TimedLoop { derived, lag_s }) => {
                 let sampled = SampledLoop::new(at_end, machine.clock, *lag_s, frequency_factor);
                 let sampled = sampled.unwrap_or_else(|| derived.sampled.clone());
@@ -133,15 +127,15 @@ pub(super) fn of_move(
     Ok(expectations)
 }
 
-/// Expected figures of a planned move of an axis with steps, through a tap table, until it has stood for some ticks.
+/// Expected figures of an axis with steps, whose [`commands`] pass through a tap table.
 pub(crate) fn stepped_move(
     axis: &AxisSection,
     sample_hz: f64,
-    planned: &(Vec<Entry>, i32),
-    (table, settle_ticks): (&TapTable, u64),
+    commands: &[[f64; 3]],
+    table: &TapTable,
     frequency_factor: f64,
 ) -> Result<Expected, StageRunError> {
-    let references = shaped(&commands(planned, settle_ticks), table, scales(axis, sample_hz));
+    let references = shaped(commands, table, scales(axis, sample_hz));
     stepped::expected(axis, sample_hz, &references, frequency_factor)
 }
 

@@ -50,7 +50,7 @@ pub use shaping::Shaping;
 
 pub(crate) use expected::{commands, stepped_move};
 pub(crate) use figures::{of_move as figures_of_move, ringing as ringing_of_move};
-pub(crate) use moves::{STANDSTILL_TICKS, plan_axis, settle_ticks};
+pub(crate) use moves::{COMPARED_CLOCKS, STANDSTILL_TICKS, WORD_FRACTION, plan_axis, settle_ticks};
 
 use host::Host;
 use tables::AxisTables;

@@ -11,7 +11,7 @@ use super::{Shaping, StageRun, StageRunError};
 use crate::stage_bench::{AxisSample, LineChange};
 
 /// Largest number of clocks in which model and RTL are compared: a minute of Verilator.
-const COMPARED_CLOCKS: u64 = 24_000_000;
+pub(crate) const COMPARED_CLOCKS: u64 = 24_000_000;
 /// Longest time for which a machine is simulated after the end of its shaped command, s.
 const LONGEST_SETTLE_S: f64 = 2.0;
 /// A move counts as over this many ticks after the end of plan and shapers.
@@ -19,7 +19,7 @@ const SPARE_TICKS: u64 = 1000;
 /// Number of ticks at the end in which nothing moves any more.
 pub(crate) const STANDSTILL_TICKS: u64 = 20;
 /// Fraction bits of a command word and of an exact position.
-const WORD_FRACTION: u32 = 8;
+pub(crate) const WORD_FRACTION: u32 = 8;
 const EXACT_FRACTION: u32 = 32;
 
 /// Result of a move.

@@ -234,20 +234,6 @@ pub fn check(
     check_with(block, device, stimuli.as_mut(), (cycles, seed), progress)
 }
 
-/// As [`check`], with every clock shown to `watch`, and without progress.
-///
-/// # Errors
-/// As [`lockstep::run`].
-pub(crate) fn check_every_clock(
-    block: &dyn Block,
-    device: &mut dyn Device,
-    (cycles, seed): (u64, u64),
-    watch: &mut dyn FnMut(&Clock<'_>) -> ControlFlow<()>,
-) -> Result<LockstepReport, Error> {
-    let mut stimuli = block.stimuli(cycles, seed);
-    run(block, device, stimuli.as_mut(), (cycles, seed), watch, &mut |_| {})
-}
-
 /// As [`check`], with other stimuli.
 ///
 /// # Errors
