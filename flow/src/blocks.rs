@@ -52,6 +52,7 @@ pub(crate) fn others(
         axes: machine.axes.len().clamp(1, MOST_AXES),
         settings: first.map_or_else(Default::default, |control| control.derived.settings),
         components,
+        buses: Vec::new(),
         stages: Vec::new(),
         inline: None,
     };

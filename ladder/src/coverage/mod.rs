@@ -82,8 +82,9 @@ pub struct Measured {
 /// Those of [`library`].
 pub fn subjects() -> Result<Vec<Box<dyn Block>>, Error> {
     let mut blocks = library()?;
-    // The inline shaper only joins blocks, each of which has its own row.
-    blocks.retain(|block| !block.instance().ends_with(ON_A_BUS) && block.name() != "inline_shaper");
+    // These only join blocks, each of which has its own row.
+    let joins = |name: &str| matches!(name, "inline_shaper" | "linked_inline_shaper" | "bus_component");
+    blocks.retain(|block| !block.instance().ends_with(ON_A_BUS) && !joins(block.name()));
     let [dead_time, minimum_pulse] = PWM_FLOORS_CLOCKS;
     let pwm = PwmConfig::new(ActiveLow::default(), dead_time, minimum_pulse)
         .map_err(|error| Error::Option(format!("the PWM of the coverage: {error}")))?;

@@ -8,6 +8,7 @@
 //! The kinds of blocks are those of the registry; a test of the command line checks that it contains every name of
 //! `verify`.
 
+use posicast_blocks::bus_component::BridgedBus;
 use posicast_blocks::component::Component;
 use posicast_blocks::divider::DividerConfig;
 use posicast_blocks::linear_scale::ScaleRatio;
@@ -23,6 +24,7 @@ use posicast_hdl::machine::AxisShaper;
 
 use super::{BenchSizes, Block, benches};
 use crate::Error;
+use crate::bus_component::BusComponentBlock;
 use crate::component::ComponentBlock;
 use crate::error_table::ErrorTableBlock;
 use crate::formal::refused;
@@ -91,6 +93,14 @@ pub fn library_sizes() -> Result<BenchSizes, Error> {
         ComponentBlock::new(component, &top, "alone")
     };
     let components = components.map(|made| made.map(component).map_err(refused));
+    let counter = Component::pulse_counter(tick, 8, false).map_err(refused)?;
+    let on_bus = |bus: BridgedBus| {
+        let names = [
+            format!("{}_{}", counter.name(), bus.suffix()),
+            format!("{}_inner", counter.name()),
+        ];
+        BusComponentBlock::new(counter.clone(), bus, &[], [&names[0], &names[1], ""])
+    };
     let alone = "alone".to_owned();
     Ok(BenchSizes {
         prefix: String::new(),
@@ -102,6 +112,10 @@ pub fn library_sizes() -> Result<BenchSizes, Error> {
         axes: 2,
         settings: Settings::default(),
         components: components.into_iter().collect::<Result<_, _>>()?,
+        buses: vec![
+            on_bus(BridgedBus::AxiLite),
+            on_bus(BridgedBus::Wishbone { pipelined: true }),
+        ],
         stages: vec![stage()?, stage_with_steps()?],
         inline: Some(crate::inline_shaper::example()?),
     })

@@ -19,6 +19,7 @@ use posicast_blocks::stage::StageConfig;
 use posicast_hdl::emit::Module;
 
 use super::Block;
+use crate::bus_component::BusComponentBlock;
 use crate::component::ComponentBlock;
 use crate::formal::Task;
 use crate::{Error, REGISTRY};
@@ -79,6 +80,8 @@ pub struct BenchSizes {
     pub settings: Settings,
     /// The components.
     pub components: Vec<ComponentBlock>,
+    /// The components on another bus that are compared too.
+    pub buses: Vec<BusComponentBlock>,
     /// The stages that are compared too.
     pub stages: Vec<StageConfig>,
     /// The inline shaper, if there is one.
@@ -334,12 +337,11 @@ mod tests {
     use super::*;
     use crate::blocks::library_sizes;
 
-    /// Each row makes blocks with its name, for every rung, except components and stages, which have their own names, and the inline
-    /// shaper with its line, which is compared in its trials alone: its parts have rows.
+    /// Each row makes blocks with its name, for every rung, except components and stages, which have their own names.
     #[test]
     fn each_row_creates_blocks_with_its_own_name() {
         let sizes = library_sizes().unwrap();
-        let has_own = |name: &str| !matches!(name, "component" | "stage" | "linked_inline_shaper" | "bus_component");
+        let has_own = |name: &str| !matches!(name, "component" | "stage");
         for row in REGISTRY.iter().filter(|row| has_own(row.name)) {
             let mut benches = (row.benches)(&sizes).unwrap();
             assert!(!benches.is_empty(), "{} has no bench", row.name);

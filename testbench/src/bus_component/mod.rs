@@ -24,9 +24,13 @@ use crate::stage::{FEW_TICKS_BARS, example};
 use crate::stimuli::Stimuli;
 use crate::wishbone_bridge::WishboneBridgeBlock;
 
-/// The row of the components in the registry: a small component and a stage, on each bus.
+/// The row of the components in the registry. Its trials are a small component and a stage, on each bus.
 pub(crate) const ROW: RegistryRow = RegistryRow {
     name: "bus_component",
+    benches: |sizes| {
+        let buses = sizes.buses.iter().cloned();
+        Ok(buses.map(|block| Box::new(block) as Box<dyn Block>).collect())
+    },
     trials: || {
         let counter = || {
             let tick = DividerConfig::new(500).map_err(refused)?;

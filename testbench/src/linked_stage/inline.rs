@@ -20,7 +20,7 @@ use super::{FASTEST, LinkedStageBlock};
 use crate::Error;
 use crate::blocks::changes::Changes;
 use crate::blocks::registry::RegistryRow;
-use crate::blocks::{Bins, BlockMutant, Trial};
+use crate::blocks::{Bins, Block, BlockMutant, Trial};
 use crate::formal::refused;
 use crate::inline_shaper::{InlineShaperRandom, example};
 use crate::lockstep::Clock;
@@ -34,6 +34,11 @@ pub(super) const LEAST_TAPS: u64 = 1;
 /// The row of the inline shaper with its line in the registry. The line is as fast as its bridge receives.
 pub(crate) const ROW: RegistryRow = RegistryRow {
     name: "linked_inline_shaper",
+    // One line is enough: the bridges have rows of their own.
+    benches: |sizes| {
+        let bench = |shaper| Ok(Box::new(linked(shaper, false)?) as Box<dyn Block>);
+        sizes.inline.iter().map(bench).collect()
+    },
     trials: || {
         Ok(vec![
             Trial::new(linked(&example()?, false)?, &[1, 2], 2).size("serial"),
