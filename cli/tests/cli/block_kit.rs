@@ -183,8 +183,21 @@ fn cli_block_that_is_not_there_is_bad_input() {
             .stderr(predicate::str::contains(words));
     };
     refused(&["--block", "flux_capacitor"], "posicast has no such block");
-    refused(&["--block", "stage"], "choose of axi_lite_bridge, axis");
+    refused(&["--block", "step_genrator"], "did you mean `step_generator`?");
+    refused(&["--block", "stage"], "choose from: axi_lite_bridge, axis");
     let inline = example("inline.toml");
     refused(&[inline.to_str().unwrap(), "--block", "pwm"], "has no such block");
     refused(&["--block", "pwm", "--hal"], "cannot be used with");
+}
+
+#[test]
+fn cli_block_kit_is_no_machine() {
+    let (_scratch, folder) = kit(&["--block", "divider"]);
+    posicast()
+        .arg("verify")
+        .arg(&folder)
+        .assert()
+        .code(2)
+        .stderr(predicate::str::contains("this is the kit of the block divider alone"))
+        .stderr(predicate::str::contains("posicast verify MACHINE --block divider"));
 }

@@ -22,6 +22,18 @@ pub enum PackageError {
     #[error("{}: this is not an output folder of posicast, {MANIFEST} is missing: name a folder that `generate` or \
         `run` wrote", .0.display())]
     NotAPackage(PathBuf),
+    /// The folder has a block alone, and not a machine.
+    #[error(
+        "{}: this is the kit of the block {block} alone: `make bench` there runs its bench; to compare a block with its model, name a machine \
+         that has it: posicast verify MACHINE --block {block}",
+        .folder.display()
+    )]
+    BlockAlone {
+        /// Path of the folder.
+        folder: PathBuf,
+        /// Name of the block.
+        block: String,
+    },
     /// The manifest is invalid.
     #[error(
         "{}: {reason}, so the files that posicast wrote here are unknown: move the folder away or name another one",

@@ -8,6 +8,9 @@ use super::error::{PackageError, at};
 use super::manifest::{Manifest, inspect};
 use super::text::read_text;
 
+/// The machine file of a folder.
+const MACHINE: &str = "machine.toml";
+
 /// Contents of an output folder.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Contents {
@@ -29,7 +32,7 @@ pub struct Contents {
 /// verifies.
 ///
 /// # Errors
-/// An error for a path that is not a folder, was not written by posicast or not completely, or lacks `machine.toml`
+/// An error for a path that is not a folder, was not written by posicast or not completely, has a block alone, or lacks `machine.toml`
 /// or one of the files in `rtl/` that posicast wrote: a missing component would go unnoticed.
 pub fn read(root: &Path) -> Result<Contents, PackageError> {
     if !root.exists() {
@@ -43,7 +46,13 @@ pub fn read(root: &Path) -> Result<Contents, PackageError> {
     if manifest.unfinished() {
         return Err(PackageError::Unfinished(root.to_owned()));
     }
-    let machine_path = root.join("machine.toml");
+    if !manifest.paths().any(|path| path == MACHINE) {
+        return Err(PackageError::BlockAlone {
+            folder: root.to_owned(),
+            block: manifest.machine,
+        });
+    }
+    let machine_path = root.join(MACHINE);
     let machine_toml = read_text(&machine_path)?;
     let rtl = verilog_in(&root.join("rtl"))?;
     let written = manifest.paths().filter(|path| path.starts_with("rtl/"));
