@@ -14,6 +14,12 @@ pub enum BitstreamError {
         /// The names of all boards.
         known: String,
     },
+    /// The shaper of the axis of this name has no tap tables, by which the bits are compared.
+    #[error(
+        "axis {0} is a cascade of half sums; allowed: shapers with taps, by whose tables the bits are compared: remove `structure` from its \
+         [axis.shaper]"
+    )]
+    Cascade(String),
     /// The results do not fit between two samples on the serial line.
     #[error(
         "the serial line of {board} cannot carry every sample: a frame takes {frame_clocks} clocks, and samples are {sample_clocks} \

@@ -190,8 +190,10 @@ fn of_machine(path: &Path, observer: &dyn Observer) -> Result<Blocks, Failure> {
     let mut all: Vec<Box<dyn Block>> = Vec::new();
     for shaper in &built.shapers {
         let prefix = format!("{}_{}", machine.name, shaper.axis);
-        let block = ShaperBlock::new(shaper.config.clone(), &prefix, &shaper.axis).map_err(bench::failure)?;
-        all.push(Box::new(block));
+        if let Some(taps) = shaper.config.taps() {
+            let block = ShaperBlock::new(taps.clone(), &prefix, &shaper.axis).map_err(bench::failure)?;
+            all.push(Box::new(block));
+        }
     }
     // Those of the components are made to stand alone; in a stage, some share what is outside of them.
     for component in &built.components {

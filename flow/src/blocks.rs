@@ -110,13 +110,13 @@ fn axes(machine: &Machine, has: impl Fn(&AxisSection) -> bool) -> String {
     }
 }
 
-/// A shaper for motion with the first axis's table, at the first size that holds it.
+/// A shaper for motion with the table of the first axis that has one, at the first size that holds it.
 fn motion_shaper(shapers: &[AxisShaper]) -> Result<ShaperConfig, Failure> {
-    let Some(first) = shapers.first() else {
-        return Err(Failure::input("the machine has no axis"));
+    let Some(first) = shapers.iter().find_map(|shaper| shaper.config.taps()) else {
+        return Err(Failure::input("the machine has no axis with taps"));
     };
-    let bits = first.config.word_bits().max(*MOTION_WORD_BITS.start());
-    let plain = ShaperConfig::new(bits, first.config.table().clone()).map_err(Failure::because)?;
+    let bits = first.word_bits().max(*MOTION_WORD_BITS.start());
+    let plain = ShaperConfig::new(bits, first.table().clone()).map_err(Failure::because)?;
     let all_channels = plain.clone().for_motion(MOTION);
     let config = all_channels.or_else(|_| plain.for_motion(ShaperMotion { channels: 1, ..MOTION }));
     config.map_err(Failure::because)

@@ -45,7 +45,9 @@ pub(crate) fn files(machine: &Machine, modules: &[Module], built: &Built<'_>) ->
         shapers: &shapers,
     });
     let bus = built.buses.first().map(BusComponentBlock::bus);
-    kit.into_iter().chain(datasheets::files(blocks, bus)).collect()
+    let has_cascade = built.shapers.iter().any(|shaper| shaper.config.taps().is_none());
+    let pages = datasheets::files(blocks, bus, has_cascade);
+    kit.into_iter().chain(pages).collect()
 }
 
 /// Adds the files to the folder.

@@ -54,7 +54,7 @@ fn tops<'a>(machine: &'a Machine, modules: &'a [Module], built: &'a Built<'_>) -
         tables: built
             .shapers
             .iter()
-            .map(|shaper| (shaper.axis.as_str(), shaper.config.table()))
+            .filter_map(|shaper| Some((shaper.axis.as_str(), shaper.config.taps()?.table())))
             .collect(),
         ..top
     });

@@ -33,8 +33,8 @@ const BUS: [(&str, &str); 2] = pages!["axi_lite_bridge" "wishbone_bridge"];
 /// Datasheets of machines with an inline shaper.
 const INLINE: [(&str, &str); 4] = pages!["inline" "inline_axis" "pulse_counter" "step_generator"];
 
-/// Datasheets of blocks that no machine has.
-const ALONE: [(&str, &str); 1] = pages!["cascade"];
+/// Datasheets of machines with a shaper of half sums.
+const CASCADE: [(&str, &str); 1] = pages!["cascade"];
 
 /// Hardware of a machine in addition to the shapers of its top module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -58,7 +58,8 @@ pub enum BuiltBlocks {
 }
 
 /// The datasheets of a machine whose registers are on this bus if not on Avalon-MM, as path in the output folder and text.
-pub fn files(built: BuiltBlocks, bus: Option<BridgedBus>) -> Vec<(String, String)> {
+/// `has_cascade`: a shaper of its top module is made of half sums.
+pub fn files(built: BuiltBlocks, bus: Option<BridgedBus>, has_cascade: bool) -> Vec<(String, String)> {
     let is_inline = built >= BuiltBlocks::Inline;
     let at_least = |least| move |_: &&(&str, &str)| !is_inline && built >= least;
     let components = COMPONENTS.iter().filter(at_least(BuiltBlocks::Components));
@@ -71,6 +72,7 @@ pub fn files(built: BuiltBlocks, bus: Option<BridgedBus>) -> Vec<(String, String
     let registers = registers.filter(|_| built > BuiltBlocks::Inline);
     let pages: Vec<_> = SHAPER
         .iter()
+        .chain(CASCADE.iter().filter(|_| has_cascade))
         .chain(components)
         .chain(stage)
         .chain(link)
@@ -95,7 +97,7 @@ pub fn of_block(name: &str, has_registers: bool) -> Vec<(String, String)> {
         .chain(&SPI_LINK))
     .chain(&BUS)
     .chain(&INLINE)
-    .chain(&ALONE);
+    .chain(&CASCADE);
     let is_bus = |page: &str| page == "registers" || BUS.iter().any(|(bus, _)| *bus == page);
     let mut pages: Vec<_> = all
         .filter(|(page, _)| *page == name || (has_registers && is_bus(page)))
@@ -158,6 +160,8 @@ mod tests {
 
     #[test]
     fn every_page_that_a_folder_links_to_is_in_it() {
+        let with_cascade = files(BuiltBlocks::Shapers, None, true);
+        assert!(with_cascade.iter().any(|(path, _)| path == "docs/cascade.md"));
         for (built, pages) in [
             (BuiltBlocks::Shapers, 1),
             (BuiltBlocks::Components, 6),
@@ -165,7 +169,7 @@ mod tests {
             (BuiltBlocks::LinkedStage, 17),
             (BuiltBlocks::Inline, 5),
         ] {
-            let files = files(built, None);
+            let files = files(built, None, false);
             assert_eq!(files.len(), pages);
             for (_, text) in &files {
                 for (at, _) in text.match_indices("](") {

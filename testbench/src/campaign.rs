@@ -11,7 +11,7 @@
 
 use std::collections::VecDeque;
 
-use posicast_blocks::shaper::ShaperConfig;
+use posicast_blocks::axis_shaper::AxisShaperConfig;
 
 use crate::shaper::{Action, Directed, Fill, Layout, MotionStimuli, Random, cases, corners, motion_cases};
 use crate::stimuli::Stimuli;
@@ -34,14 +34,15 @@ impl<'a> Campaign<'a> {
     /// The campaign for the shapers of `layout`, built with `configs`. `words` has the move as command words per
     /// axis; without words the move is left out. The move gets at most a quarter of `cycles`, so that a long move
     /// leaves room for the random stimuli.
-    pub fn new(layout: &Layout, configs: &[&ShaperConfig], words: &'a [Vec<i64>], cycles: u64, seed: u64) -> Self {
+    pub fn new(layout: &Layout, configs: &[&AxisShaperConfig], words: &'a [Vec<i64>], cycles: u64, seed: u64) -> Self {
         let pass_clocks = longest_pass_clocks(configs);
         let mut phases = VecDeque::from([Phase {
             stimuli: Box::new(Fill::new(layout, seed)),
             clocks: fill_clocks(configs),
         }]);
         // A corner case is for the sizes of one axis; for the others it is one more script.
-        let corner_cases = layout.axes.iter().flat_map(corners);
+        let tables = layout.axes.iter().filter_map(|axis| axis.tables.as_ref());
+        let corner_cases = tables.flat_map(corners);
         for (_, script) in directed(layout).into_iter().chain(corner_cases) {
             let directed = Directed::new(layout, script);
             let clocks = directed.clocks(pass_clocks);
@@ -66,7 +67,7 @@ impl<'a> Campaign<'a> {
 
     /// Number of clocks after which the delay lines were full, every tap was exercised, and every directed case is
     /// over.
-    pub fn least_clocks(layout: &Layout, configs: &[&ShaperConfig]) -> u64 {
+    pub fn least_clocks(layout: &Layout, configs: &[&AxisShaperConfig]) -> u64 {
         let pass_clocks = longest_pass_clocks(configs);
         let cases = directed(layout).into_iter();
         let cases = cases.map(|(_, script)| Directed::new(layout, script).clocks(pass_clocks));
@@ -75,25 +76,22 @@ impl<'a> Campaign<'a> {
 }
 
 /// Clocks of the longest pass, which is a handover over two tables.
-fn longest_pass_clocks(configs: &[&ShaperConfig]) -> u32 {
-    let passes = configs.iter().map(|config| config.pass_clocks(config.most_products()));
+fn longest_pass_clocks(configs: &[&AxisShaperConfig]) -> u32 {
+    let passes = configs.iter().map(|config| config.most_pass_clocks());
     passes.max().unwrap_or(0)
 }
 
 /// Clocks of the phase that fills the delay lines, in which only the machine's tables are in use.
-fn fill_clocks(configs: &[&ShaperConfig]) -> u64 {
-    let products = |config: &ShaperConfig| (config.channels() * config.table().taps().len()) as u32;
-    let pass = configs.iter().map(|config| config.pass_clocks(products(config))).max();
-    let longest = configs
-        .iter()
-        .map(|config| config.table().longest_delay_samples())
-        .max();
+fn fill_clocks(configs: &[&AxisShaperConfig]) -> u64 {
+    let pass = configs.iter().map(|config| config.pass_clocks()).max();
+    let longest = configs.iter().map(|config| config.longest_delay_samples()).max();
     Fill::clocks(longest.unwrap_or(0), pass.unwrap_or(0))
 }
 
 /// The directed cases for the shapers of the layout.
 fn directed(layout: &Layout) -> Vec<(&'static str, Vec<Action>)> {
-    let in_motion = layout.axes.iter().any(|axis| axis.swap_how.is_some());
+    let mut tables = layout.axes.iter().filter_map(|axis| axis.tables.as_ref());
+    let in_motion = tables.any(|tables| tables.swap_how.is_some());
     let mut all = cases();
     all.extend(in_motion.then(motion_cases).into_iter().flatten());
     all

@@ -215,7 +215,9 @@ impl Places {
 
 /// Name of the output for the shaped position: `y`, or `y_0` of a motion shaper.
 fn output_of(axis: &AxisLayout) -> String {
-    port_of(&axis.name, if axis.swap_how.is_some() { "y_0" } else { "y" })
+    let tables = axis.tables.as_ref();
+    let is_for_motion = tables.is_some_and(|tables| tables.swap_how.is_some());
+    port_of(&axis.name, if is_for_motion { "y_0" } else { "y" })
 }
 
 fn port_of(axis: &str, port: &str) -> String {

@@ -2,6 +2,7 @@
 
 use crate::support;
 
+use posicast_blocks::axis_shaper::AxisShaperConfig;
 use posicast_blocks::shaper::{Shaper, ShaperConfig, ShaperMotion as ForMotion, pass_clocks};
 use posicast_hdl::machine::AxisShaper;
 use posicast_taps::{Tap, TapTable};
@@ -10,7 +11,7 @@ use posicast_testbench::icarus::Icarus;
 use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
 use posicast_testbench::lockstep::{self, Device, LockstepOptions, TwoValued};
 use posicast_testbench::shaper::{
-    Action, Coverage, Directed, Layout, MotionStimuli, Random, cases, corners, motion_cases,
+    Action, Coverage, Directed, Layout, MotionStimuli, Random, TableLayout, cases, corners, motion_cases,
 };
 use posicast_testbench::shaper::{MachineShapers, ShaperBlock};
 use posicast_testbench::stimuli::Stimuli;
@@ -65,6 +66,10 @@ impl Bench {
         let block = ShaperBlock::new(config, "", "alone").unwrap();
         let sources = Sources::of_modules(&broken(&block.modules().unwrap(), from, to)).unwrap();
         Self { block, sources }
+    }
+
+    fn tables(&self) -> &TableLayout {
+        self.layout().axes[0].tables.as_ref().unwrap()
     }
 
     fn layout(&self) -> &Layout {
@@ -141,7 +146,7 @@ fn lockstep_every_directed_case_of_motion() {
 fn lockstep_every_directed_case() {
     for config in [standard(), config(16, negative(15), 0, 0)] {
         let bench = Bench::new(config);
-        for (name, script) in cases().into_iter().chain(corners(&bench.layout().axes[0])) {
+        for (name, script) in cases().into_iter().chain(corners(bench.tables())) {
             let mut directed = bench.directed(script);
             let clocks = directed.clocks(pass_clocks(bench.block.config().most_taps()));
             let (report, _) = bench.run(&mut bench.verilated(5), &mut directed, clocks);
@@ -194,7 +199,7 @@ fn lockstep_real_motion_of_a_machine_with_two_axes() {
     let (x, y) = (config(32, zvd(15), 0, 0), config(32, negative(15), 78, 64));
     let shapers = [("x", x), ("y", y)].map(|(axis, config)| AxisShaper {
         axis: axis.to_owned(),
-        config,
+        config: AxisShaperConfig::Taps(config),
     });
     let words = vec![smooth_moves(1000, 5000.0 * 256.0), smooth_moves(800, -3e6)];
     let block = MachineShapers::new("stage", shapers.to_vec(), words).unwrap();
@@ -236,7 +241,7 @@ fn crosssim_corners_catch_what_random_stimuli_miss() {
         ),
     ] {
         let bench = Bench::broken(standard(), from, to);
-        let (_, script) = corners(&bench.layout().axes[0])
+        let (_, script) = corners(bench.tables())
             .into_iter()
             .find(|(name, _)| *name == corner)
             .unwrap();

@@ -46,6 +46,7 @@ fn cli_the_kits_example_is_clean_and_its_bench_passes() {
     for (machine, name) in [
         ("robot-joint.toml", "robot_joint"),
         ("custom-shaper.toml", "pick_and_place"),
+        ("varying-load.toml", "boom"),
     ] {
         let folder = generated(machine);
         let out = folder.path().join("out");

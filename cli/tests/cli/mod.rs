@@ -14,6 +14,7 @@ mod bitstream;
 mod block_kit;
 mod buses;
 mod campaign;
+mod cascade;
 mod command;
 mod completions;
 mod contour;

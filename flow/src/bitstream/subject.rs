@@ -64,16 +64,19 @@ impl<'a> Subject<'a> {
                 bare,
             });
         }
-        let axes = built.shapers.iter().map(|shaper| TopAxis {
-            name: shaper.axis.clone(),
-            config: shaper.config.clone(),
+        let axes = built.shapers.iter().map(|shaper| {
+            let config = shaper.config.taps().cloned();
+            Ok(TopAxis {
+                name: shaper.axis.clone(),
+                config: config.ok_or_else(|| BitstreamError::Cascade(shaper.axis.clone()))?,
+            })
         });
         let clocks = machine.clock.clocks_per_sample();
         Ok(Self::Shapers(BoardTop::new(
             &machine.name,
             *board,
             clocks,
-            axes.collect(),
+            axes.collect::<Result<_, BitstreamError>>()?,
         )?))
     }
 

@@ -12,6 +12,7 @@ use posicast_machine::hardware::HardwareError;
 use posicast_machine::machine_file::{AxisSection, DriveMode};
 use posicast_machine::plan::{AxisTables, ModeFigures};
 use posicast_shaper::design::{ConvolutionFigures, Findings};
+use posicast_shaper::digitise::half_sums_samples;
 use std::path::Path;
 
 /// The design of an axis with its figures.
@@ -122,6 +123,10 @@ impl AxisReport<'_> {
                 digitise: self.tables.digitised.method_used.to_string(),
                 fits: self.misfit.is_none(),
                 misfit: self.misfit.map(ToString::to_string),
+                half_sums_samples: match findings {
+                    Findings::HalfSums(delays_s) => half_sums_samples(delays_s, sample_hz),
+                    _ => Vec::new(),
+                },
                 taps: document::TableTap::of(&self.tables.table),
                 modes: self
                     .modes

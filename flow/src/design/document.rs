@@ -286,7 +286,10 @@ pub struct Quantised {
     /// Why it cannot.
     #[serde(skip)]
     pub misfit: Option<String>,
-    /// The taps.
+    /// Delays in samples of the half sums that compute the shaper, if it is a cascade.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub half_sums_samples: Vec<u32>,
+    /// The taps; of a cascade those of a table with the same results.
     pub taps: Vec<TableTap>,
     /// What the integer taps leave of each mode, in the order of the file.
     pub modes: Vec<Residual>,

@@ -5,6 +5,7 @@
 
 pub mod axi_lite_bridge;
 pub mod axis;
+pub mod axis_shaper;
 mod bridged;
 pub mod bus_component;
 pub mod cascade;

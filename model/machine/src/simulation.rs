@@ -12,6 +12,8 @@
 
 use crate::plan::AxisTables;
 use crate::plant::{Plant, SampledPlant};
+use posicast_blocks::axis_shaper::AxisShaperConfig;
+use posicast_blocks::cascade::SampleCascade;
 use posicast_blocks::shaper::{CHANNELS_MAX, MotionShaper, SampleShaper, ShaperConfig, wrap};
 
 /// Result of a command on one axis.
@@ -56,7 +58,7 @@ pub fn largest_difference(words: &[i64], float: &[f64]) -> f64 {
 
 /// Runs `words` through the shaper that `config` describes, its float design `tables`, and `plant`.
 pub fn simulate_axis(
-    config: &ShaperConfig,
+    config: &AxisShaperConfig,
     tables: &AxisTables,
     plant: &Plant,
     sample_period_s: f64,
@@ -64,14 +66,22 @@ pub fn simulate_axis(
 ) -> AxisSimulation {
     let start = words.first().copied().unwrap_or(0);
     let float = tables.digitised.shape(words);
-    let (shaped, float) = if config.motion().is_some_and(|motion| motion.modulo) {
-        (turned(config, words, &float), float)
-    } else {
-        let mut shaper = SampleShaper::new(config);
-        shaper.start(start);
-        let shaped = words.iter().map(|x| shaper.push(*x)).collect();
-        let (least, most) = (config.word_min() as f64, config.word_max() as f64);
-        (shaped, float.into_iter().map(|y| y.clamp(least, most)).collect())
+    let (shaped, float) = match config {
+        AxisShaperConfig::Taps(config) if config.motion().is_some_and(|motion| motion.modulo) => {
+            (turned(config, words, &float), float)
+        }
+        AxisShaperConfig::Taps(config) => {
+            let mut shaper = SampleShaper::new(config);
+            shaper.start(start);
+            let shaped = words.iter().map(|x| shaper.push(*x)).collect();
+            let (least, most) = (config.word_min() as f64, config.word_max() as f64);
+            (shaped, float.into_iter().map(|y| y.clamp(least, most)).collect())
+        }
+        AxisShaperConfig::Cascade(config) => {
+            let mut cascade = SampleCascade::new(config);
+            cascade.start(start);
+            (words.iter().map(|x| cascade.push(*x)).collect(), float)
+        }
     };
     let follow = |words: &[i64]| follow(plant, sample_period_s, start, words);
     let (position, vibration) = follow(&shaped);
@@ -140,7 +150,7 @@ mod tests {
     fn simulate(words: &[i64]) -> AxisSimulation {
         let machine = machine_file::parse("one.toml", MACHINE).unwrap();
         let design = design_machine(&machine).unwrap();
-        let config = ShaperConfig::new(32, design.axes[0].table.clone()).unwrap();
+        let config = AxisShaperConfig::Taps(ShaperConfig::new(32, design.axes[0].table.clone()).unwrap());
         let plant = Plant::of_axis(&machine.axes[0]).unwrap();
         simulate_axis(&config, &design.axes[0], &plant, 1e-4, words)
     }
@@ -170,7 +180,7 @@ mod tests {
             channels: 1,
             modulo: true,
         };
-        let config = plain.for_motion(modulo).unwrap();
+        let config = AxisShaperConfig::Taps(plain.for_motion(modulo).unwrap());
         let plant = Plant::of_axis(&machine.axes[0]).unwrap();
         // Two and a half turns of the word in one direction and a bit back, at 0.002 turns per sample at most.
         let turn = f64::from(24).exp2();

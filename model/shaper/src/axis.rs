@@ -11,6 +11,21 @@ pub const DEFAULT_EPSILON: f64 = 0.05;
 /// Default number of zero pairs of `chebyshev-ei`.
 pub const DEFAULT_CHEBYSHEV_ORDER: u32 = 3;
 
+/// What computes the shaper of an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ShaperStructure {
+    /// A table of taps, each a product.
+    #[default]
+    Taps,
+    /// Half sums in series, without a product: for `vibrationless` alone.
+    Cascade,
+}
+
+impl ShaperStructure {
+    /// Every structure with its name in the machine file.
+    pub const ALL: [(Self, &str); 2] = [(Self::Taps, "taps"), (Self::Cascade, "cascade")];
+}
+
 /// Inputs of the design of an axis's shaper.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShapedAxis<'a> {
@@ -56,6 +71,11 @@ impl ShapedAxis<'_> {
             .unwrap_or_else(|| self.kind_of(mode).row().default_order)
     }
 
+    /// Whether half sums in series compute the shaper.
+    pub fn is_cascade(&self) -> bool {
+        self.shaper.is_some_and(|s| s.structure == ShaperStructure::Cascade)
+    }
+
     /// Residual bound of `vibrationless`, default 0.05.
     pub fn epsilon(&self) -> f64 {
         self.shaper.and_then(|s| s.epsilon).unwrap_or(DEFAULT_EPSILON)
@@ -90,6 +110,8 @@ impl ShapedAxis<'_> {
 pub struct ShaperChoice {
     /// Kind of shaper.
     pub kind: ShaperKind,
+    /// What computes it.
+    pub structure: ShaperStructure,
     /// Residual vibration that an EI kind tolerates at the mode, in (0, 1); default 0.05.
     pub tolerance: Option<f64>,
     /// Zero pairs of `chebyshev-ei`, or frequencies per mode of `vibrationless`: 1..=5.
@@ -121,6 +143,7 @@ impl ShaperChoice {
     pub fn of_kind(kind: ShaperKind) -> Self {
         Self {
             kind,
+            structure: ShaperStructure::default(),
             tolerance: None,
             order: None,
             epsilon: None,

@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use super::Kit;
+use super::example::signals;
+use super::{Kit, KitShaper};
 
 /// A step is a sixteenth of a word, so that shapers whose partial sums exceed the command do not saturate.
 const STEP_SHIFT: u32 = 4;
@@ -43,11 +44,12 @@ module {machine}_bench;
             "
     reg  signed [{high}:0] {axis}_command = {bits}'sd0;
     wire signed [{high}:0] {axis}_shaped;
-    wire {axis}_valid, {axis}_saturated, {axis}_overrun;
+    wire {flags};
     integer {axis}_values = 0;
     reg  signed [{high}:0] {axis}_before = {bits}'sd0;
 ",
-            high = bits - 1
+            high = bits - 1,
+            flags = flags(shaper).join(", "),
         );
     }
     let _ = write!(
@@ -59,7 +61,7 @@ module {machine}_bench;
     );
     for shaper in kit.shapers {
         let axis = shaper.axis;
-        for port in ["command", "shaped", "valid", "saturated", "overrun"] {
+        for port in signals(shaper) {
             let _ = write!(text, ",\n        .{axis}_{port}({axis}_{port})");
         }
     }
@@ -104,11 +106,12 @@ module {machine}_bench;
         let _ = write!(
             text,
             "        $display(\"axis {axis}: command %0d, shaped %0d, in %0d steps\", {axis}_command, {axis}_shaped, {axis}_values);
-        if ({axis}_shaped !== {axis}_command || {axis}_values == 0 || {axis}_saturated || {axis}_overrun) begin
+        if ({axis}_shaped !== {axis}_command || {axis}_values == 0{failed}) begin
             $display(\"FAILED: axis {axis}\");
             failures = failures + 1;
         end
-"
+",
+            failed = flags(shaper)[1..].iter().map(|flag| format!(" || {flag}")).collect::<String>()
         );
     }
     text.push_str(
@@ -122,4 +125,10 @@ endmodule
 ",
     );
     text
+}
+
+/// The flags of an axis: a new value first, then those that a step must not raise.
+fn flags(shaper: &KitShaper<'_>) -> Vec<String> {
+    let flags = signals(shaper).into_iter().skip(2);
+    flags.map(|signal| format!("{}_{signal}", shaper.axis)).collect()
 }

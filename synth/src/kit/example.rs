@@ -4,6 +4,8 @@ use std::fmt::Write;
 
 use super::{Kit, KitShaper, is_input, range};
 use posicast_blocks::Port;
+use posicast_blocks::axis_shaper::AxisShaperConfig;
+use posicast_blocks::cascade;
 use posicast_blocks::shaper::{moving, plain};
 
 /// Connection of a port of the shaper: none, a constant, or the user's signal.
@@ -24,9 +26,10 @@ fn connection(port: &Port) -> Connection {
 
 /// Meaning of a port, from the list of ports.
 fn meaning(shaper: &KitShaper<'_>, port: &Port) -> String {
-    let list = match shaper.config.motion() {
-        Some(_) => moving::PORTS,
-        None => plain::PORTS,
+    let list = match shaper.config {
+        AxisShaperConfig::Taps(config) if config.motion().is_some() => moving::PORTS,
+        AxisShaperConfig::Taps(_) => plain::PORTS,
+        AxisShaperConfig::Cascade(_) => cascade::PORTS,
     };
     let of_array = |name: &str| port.name.strip_prefix(name).is_some_and(|index| index.starts_with('_'));
     let row = list
@@ -49,13 +52,13 @@ fn yours(shaper: &KitShaper<'_>, port: &Port) -> String {
 /// Description of a port with the axis's position; `None` for other ports.
 fn position_meaning(kit: &Kit<'_>, shaper: &KitShaper<'_>, port: &Port) -> Option<String> {
     let axis = shaper.axis;
-    if port.name == shaper.position("x") {
+    if port.name == shaper.config.position("x") {
         let fraction = kit.command_fraction;
         return Some(format!(
             "Command of axis {axis}: its position in counts, with {fraction} fraction bits; read at strobe."
         ));
     }
-    let holds = port.name == shaper.position("y");
+    let holds = port.name == shaper.config.position("y");
     holds.then(|| {
         format!("Shaped command of axis {axis}, in the same format; new when {axis}_valid is high, and holds.")
     })
@@ -167,15 +170,19 @@ fn word(shaper: &KitShaper<'_>) -> String {
     format!("signed [{}:0]", shaper.config.word_bits() - 1)
 }
 
-/// Signals of an axis at the example's ports.
-pub(super) const SIGNALS: [&str; 5] = ["command", "shaped", "valid", "saturated", "overrun"];
+/// Signals of an axis at the example's ports; a cascade has no saturation.
+pub(super) fn signals(shaper: &KitShaper<'_>) -> Vec<&'static str> {
+    let mut signals = vec!["command", "shaped", "valid", "saturated", "overrun"];
+    signals.retain(|signal| shaper.has_taps() || *signal != "saturated");
+    signals
+}
 
 /// The ports of the axes, a line each.
 pub(super) fn ports(kit: &Kit<'_>) -> String {
     let mut text = String::new();
     for shaper in kit.shapers {
         let (axis, word) = (shaper.axis, word(shaper));
-        for (index, signal) in SIGNALS.into_iter().enumerate() {
+        for (index, signal) in signals(shaper).into_iter().enumerate() {
             let _ = match index {
                 0 => writeln!(text, "    input  wire {word} {axis}_{signal},"),
                 1 => writeln!(text, "    output wire {word} {axis}_{signal},"),
@@ -246,8 +253,8 @@ module {machine}_example #(
 fn connected(shaper: &KitShaper<'_>, port: &Port) -> Option<String> {
     let axis = shaper.axis;
     match port.name.as_str() {
-        name if name == shaper.position("x") => Some(format!("{axis}_command")),
-        name if name == shaper.position("y") => Some(format!("{axis}_shaped")),
+        name if name == shaper.config.position("x") => Some(format!("{axis}_command")),
+        name if name == shaper.config.position("y") => Some(format!("{axis}_shaped")),
         name @ ("valid" | "saturated" | "overrun") => Some(format!("{axis}_{name}")),
         _ => None,
     }

@@ -19,7 +19,7 @@ mod example;
 mod pll;
 mod vendors;
 
-use posicast_blocks::shaper::{ShaperConfig, ports};
+use posicast_blocks::axis_shaper::AxisShaperConfig;
 use posicast_blocks::{Direction, Port};
 
 /// Idle clocks between two samples in the bench.
@@ -48,43 +48,36 @@ pub struct KitShaper<'a> {
     /// Name of the axis.
     pub axis: &'a str,
     /// Its build parameters.
-    pub config: &'a ShaperConfig,
+    pub config: &'a AxisShaperConfig,
 }
 
 impl KitShaper<'_> {
     /// Ports of the top that belong to the axis, without those that all axes share.
     fn ports(&self) -> Vec<Port> {
-        let own = ports(self.config)
+        let own = self
+            .config
+            .ports()
             .into_iter()
             .filter(|port| !["rst", "strobe"].contains(&port.name.as_str()));
         own.collect()
     }
 
-    /// Name of its position port `word`, which is `x` or `y`.
-    fn position(&self, word: &str) -> String {
-        match self.config.motion() {
-            Some(_) => format!("{word}_0"),
-            None => word.to_owned(),
-        }
+    /// Whether it has a table of taps, and not half sums in series.
+    fn has_taps(&self) -> bool {
+        self.config.taps().is_some()
     }
 }
 
 impl Kit<'_> {
     /// Number of clocks for a sample with the longest table, with a few to spare.
     fn pass_clocks(&self) -> u32 {
-        let clocks = self.shapers.iter().map(|shaper| {
-            let taps = shaper.config.table().taps().len();
-            shaper.config.pass_clocks(taps as u32) + SPARE_CLOCKS
-        });
-        clocks.max().unwrap_or(SPARE_CLOCKS)
+        let clocks = self.shapers.iter().map(|shaper| shaper.config.pass_clocks());
+        clocks.map(|clocks| clocks + SPARE_CLOCKS).max().unwrap_or(SPARE_CLOCKS)
     }
 
     /// Number of samples after which a step has passed every shaper.
     fn longest_delay_samples(&self) -> u32 {
-        let delays = self
-            .shapers
-            .iter()
-            .map(|shaper| shaper.config.table().longest_delay_samples());
+        let delays = self.shapers.iter().map(|shaper| shaper.config.longest_delay_samples());
         delays.max().unwrap_or(0)
     }
 }
@@ -181,18 +174,39 @@ fn what_else(kit: &Kit<'_>) -> String {
     const HEADING: &str = "## What else to connect on a real machine\n";
     let section = PAGE.split_once(HEADING).map_or("", |(_, after)| after);
     let section = section.split("\n## ").next().unwrap_or_default();
-    let Some(first) = kit.shapers.first() else {
+    let with_taps = kit.shapers.iter().find(|shaper| shaper.has_taps());
+    let Some(first) = with_taps.or(kit.shapers.first()) else {
         return String::new();
     };
     let axis = first.axis;
     let section = ["x", "y"].into_iter().fold(section.to_owned(), |section, word| {
-        section.replace(&format!("AXIS_{word}"), &format!("{axis}_{}", first.position(word)))
+        section.replace(
+            &format!("AXIS_{word}"),
+            &format!("{axis}_{}", first.config.position(word)),
+        )
     });
     let others = match kit.shapers.len() {
-        1 => "",
-        _ => "The ports are those of the first axis; the other axes have the same.\n\n",
+        1 => String::new(),
+        _ => format!("The ports are those of axis {axis}; the other axes have the same.\n"),
     };
-    format!("{HEADING}\n{others}{}", section.trim_start().replace("AXIS", axis))
+    let cascades = kit.shapers.iter().filter(|shaper| !shaper.has_taps());
+    let cascades: Vec<String> = cascades.map(|shaper| format!("`{}`", shaper.axis)).collect();
+    let cascades = match cascades.as_slice() {
+        [] => String::new(),
+        names => format!(
+            "A cascade of half sums ({}) has neither tables to load nor `saturated`: a mean of words cannot leave the word.\n",
+            names.join(", ")
+        ),
+    };
+    let gap = if others.is_empty() && cascades.is_empty() {
+        ""
+    } else {
+        "\n"
+    };
+    format!(
+        "{HEADING}\n{others}{cascades}{gap}{}",
+        section.trim_start().replace("AXIS", axis)
+    )
 }
 
 /// Instructions for a board with another oscillator.

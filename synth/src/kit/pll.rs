@@ -164,7 +164,7 @@ module {machine}_on_board #(
         ports = example::ports(kit),
     );
     for shaper in kit.shapers {
-        for signal in example::SIGNALS {
+        for signal in example::signals(shaper) {
             let name = format!("{}_{signal}", shaper.axis);
             let _ = writeln!(text, "        .{name}({name}),");
         }

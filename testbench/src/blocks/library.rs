@@ -8,6 +8,7 @@
 //! The kinds of blocks are those of the registry; a test of the command line checks that it contains every name of
 //! `verify`.
 
+use posicast_blocks::axis_shaper::AxisShaperConfig;
 use posicast_blocks::bus_component::BridgedBus;
 use posicast_blocks::component::Component;
 use posicast_blocks::divider::DividerConfig;
@@ -48,7 +49,7 @@ pub fn library() -> Result<Vec<Box<dyn Block>>, Error> {
     let axis = |axis: &str, delays| -> Result<AxisShaper, Error> {
         Ok(AxisShaper {
             axis: axis.to_owned(),
-            config: shaper(delays)?,
+            config: AxisShaperConfig::Taps(shaper(delays)?),
         })
     };
     let shapers = vec![axis("x", [38, 39, 77, 78])?, axis("y", [31, 32, 63, 64])?];

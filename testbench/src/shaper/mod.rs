@@ -1,28 +1,29 @@
 //! The bench of `shaper`: one shaper alone, or all shapers of a machine in its top module.
 
+mod machine;
 pub(crate) mod proofs;
 pub(crate) mod stimuli;
 mod trials;
 
+pub use self::machine::MachineShapers;
 pub use self::stimuli::{
-    Action, AxisLayout, Coverage, Directed, Fill, Layout, MotionStimuli, Random, ShaperExercise, cases, corners,
-    motion_cases,
+    Action, AxisLayout, Coverage, Directed, Fill, Layout, MotionStimuli, Random, ShaperExercise, TableLayout, cases,
+    corners, motion_cases,
 };
+use posicast_blocks::ClockedBlock;
+use posicast_blocks::axis_shaper::AxisShaperConfig;
 use posicast_blocks::shaper::{Shaper, ShaperConfig, ShaperMotion, ports};
-use posicast_blocks::{ClockedBlock, Port};
 use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module};
-use posicast_hdl::machine::{AxisShaper, emit_machine};
 use posicast_hdl::shaper::{emit, simulate, simulated_as};
 use posicast_taps::{Tap, TapTable};
 
 use crate::Error;
-use crate::blocks::reached::AtThePorts;
 use crate::blocks::registry::{AreaRow, RegistryRow, one, small};
-use crate::blocks::{Bins, Block, Exercise, Reach, ReachedCount, named};
+use crate::blocks::{Bins, Block, Exercise, named};
 use crate::campaign::Campaign;
 use crate::formal::refused;
-use crate::lockstep::{Clock, Instance, SideBySide};
+use crate::lockstep::Clock;
 use crate::stimuli::Stimuli;
 
 /// The block's row in the registry.
@@ -85,6 +86,10 @@ impl ShaperBlock {
     pub fn layout(&self) -> &Layout {
         &self.layout
     }
+
+    fn as_axis(&self) -> AxisShaperConfig {
+        AxisShaperConfig::Taps(self.config.clone())
+    }
 }
 
 impl Block for ShaperBlock {
@@ -117,15 +122,15 @@ impl Block for ShaperBlock {
     }
 
     fn stimuli(&self, cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {
-        Box::new(Campaign::new(&self.layout, &[&self.config], &[], cycles, seed))
+        Box::new(Campaign::new(&self.layout, &[&self.as_axis()], &[], cycles, seed))
     }
 
     fn least_clocks(&self) -> u64 {
-        Campaign::least_clocks(&self.layout, &[&self.config])
+        Campaign::least_clocks(&self.layout, &[&self.as_axis()])
     }
 
     fn exercise(&self) -> Option<Box<dyn Exercise + '_>> {
-        let shown = ShaperExercise::new(&self.layout, [&self.config]);
+        let shown = ShaperExercise::new(&self.layout, [&self.as_axis()]);
         Some(Box::new(OfInstances {
             shown,
             names: vec![self.instance.clone()],
@@ -133,145 +138,7 @@ impl Block for ShaperBlock {
     }
 
     fn coverage(&self) -> Box<dyn Bins + '_> {
-        Box::new(OfLayout::new(&self.layout, [&self.config]))
-    }
-}
-
-/// The shapers of a machine in its top module, one per axis.
-#[derive(Debug, Clone)]
-pub struct MachineShapers {
-    machine: String,
-    shapers: Vec<AxisShaper>,
-    layout: Layout,
-    words: Vec<Vec<i64>>,
-}
-
-impl MachineShapers {
-    /// Creates the top module of the machine of this name. `words` is a move that the stimuli include, as command words
-    /// per axis; it may be empty.
-    ///
-    /// # Errors
-    /// [`Error::Unlike`] if there is no shaper.
-    pub fn new(machine: &str, shapers: Vec<AxisShaper>, words: Vec<Vec<i64>>) -> Result<Self, Error> {
-        let fraction = shapers.first().map_or(1, |s| s.config.coefficient_fraction());
-        Ok(Self {
-            layout: Layout::new(joined(&shapers, 0).ports(), fraction)?,
-            machine: machine.to_owned(),
-            shapers,
-            words,
-        })
-    }
-
-    /// Returns the shapers, axis by axis.
-    pub fn shapers(&self) -> &[AxisShaper] {
-        &self.shapers
-    }
-
-    /// Returns the positions of the ports.
-    pub fn layout(&self) -> &Layout {
-        &self.layout
-    }
-
-    /// Returns the move that the stimuli include.
-    pub fn words(&self) -> &[Vec<i64>] {
-        &self.words
-    }
-
-    fn configs(&self) -> Vec<&ShaperConfig> {
-        self.shapers.iter().map(|shaper| &shaper.config).collect()
-    }
-
-    /// Returns the number of clocks of the longest pass of all axes.
-    pub fn pass_clocks(&self) -> u32 {
-        let passes = self
-            .shapers
-            .iter()
-            .map(|s| s.config.pass_clocks(s.config.most_products()));
-        passes.max().unwrap_or(0)
-    }
-}
-
-impl Block for MachineShapers {
-    fn name(&self) -> &str {
-        "shaper"
-    }
-
-    fn instance(&self) -> &str {
-        &self.machine
-    }
-
-    fn modules(&self) -> Result<Vec<Module>, EmitError> {
-        emit_machine(&self.machine, &self.shapers)
-    }
-
-    fn top(&self) -> String {
-        self.machine.clone()
-    }
-
-    fn model(&self, seed: u64) -> Box<dyn ClockedBlock> {
-        Box::new(joined(&self.shapers, seed))
-    }
-
-    fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError> {
-        let block = |s: &AxisShaper| Ok((s.axis.clone(), simulate(&s.config)?));
-        let blocks = self.shapers.iter().map(block).collect::<Result<_, _>>()?;
-        Ok(Box::new(SideBySide::new(blocks)))
-    }
-
-    fn simulated_as(&self) -> Option<String> {
-        let of_axis = |s: &AxisShaper| Some(format!("{}: {}", s.axis, simulated_as(&s.config)?));
-        let sizes: Vec<_> = self.shapers.iter().filter_map(of_axis).collect();
-        (!sizes.is_empty()).then(|| sizes.join("; "))
-    }
-
-    fn stimuli(&self, cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {
-        Box::new(Campaign::new(&self.layout, &self.configs(), &self.words, cycles, seed))
-    }
-
-    fn least_clocks(&self) -> u64 {
-        Campaign::least_clocks(&self.layout, &self.configs())
-    }
-
-    fn exercise(&self) -> Option<Box<dyn Exercise + '_>> {
-        let shown = ShaperExercise::new(&self.layout, self.configs());
-        let names = self.shapers.iter().map(|shaper| shaper.axis.clone()).collect();
-        Some(Box::new(OfInstances { shown, names }))
-    }
-
-    fn reach(&self) -> Box<dyn Reach + '_> {
-        Box::new(SideBySideReach::new(&self.shapers))
-    }
-
-    fn coverage(&self) -> Box<dyn Bins + '_> {
-        Box::new(OfLayout::new(&self.layout, self.shapers.iter().map(|s| &s.config)))
-    }
-
-    fn instances(&self, _ports: &[Port]) -> Vec<Instance> {
-        joined(&self.shapers, 0).instances(self.name())
-    }
-}
-
-/// Counts at the ports of each shaper.
-struct SideBySideReach(Vec<AtThePorts>);
-
-impl SideBySideReach {
-    fn new(shapers: &[AxisShaper]) -> Self {
-        let joined = joined(shapers, 0);
-        let of = |shaper: &AxisShaper| {
-            let prefix = format!("{}_", shaper.axis);
-            AtThePorts::new(&shaper.axis, &prefix, joined.ports(), None)
-        };
-        Self(shapers.iter().map(of).collect())
-    }
-}
-
-impl Reach for SideBySideReach {
-    fn observe(&mut self, clock: &Clock<'_>) {
-        self.0.iter_mut().for_each(|shaper| shaper.observe(clock));
-    }
-
-    fn reached(&self) -> Vec<(String, ReachedCount)> {
-        self.0.iter().flat_map(AtThePorts::reached).collect()
+        Box::new(OfLayout::new(&self.layout, &[&self.as_axis()]))
     }
 }
 
@@ -298,32 +165,26 @@ impl Exercise for OfInstances {
     }
 }
 
-fn joined(shapers: &[AxisShaper], seed: u64) -> SideBySide {
-    let block = |(index, s): (usize, &AxisShaper)| {
-        // The initial contents of each memory differ, because nothing may depend on them.
-        let block: Box<dyn ClockedBlock> = Box::new(Shaper::new(&s.config, seed.wrapping_add(index as u64)));
-        (s.axis.clone(), block)
-    };
-    SideBySide::new(shapers.iter().enumerate().map(block).collect())
-}
+/// Cases that only shapers with tables have.
+const OF_TABLES: [&str; 5] = ["tap writes", "refused", "taps read back", "swaps requested", "swaps"];
 
 /// Coverage of a shaper: the layout gives the positions of its ports, the configuration the cases that can occur.
 struct OfLayout<'a> {
     layout: &'a Layout,
     saturates: bool,
+    has_tables: bool,
     hands_over: bool,
     coverage: Coverage,
 }
 
 impl<'a> OfLayout<'a> {
-    fn new(layout: &'a Layout, configs: impl IntoIterator<Item = &'a ShaperConfig>) -> Self {
-        let motions: Vec<_> = configs.into_iter().map(ShaperConfig::motion).collect();
-        // A position that wraps around never saturates.
-        let wraps = |motion: &Option<ShaperMotion>| motion.is_some_and(|motion| motion.modulo && motion.channels == 1);
+    fn new(layout: &'a Layout, configs: &[&AxisShaperConfig]) -> Self {
+        let hands_over = |config: &&AxisShaperConfig| config.taps().is_some_and(|taps| taps.motion().is_some());
         Self {
             layout,
-            saturates: !motions.iter().all(wraps),
-            hands_over: motions.iter().any(Option::is_some),
+            saturates: configs.iter().any(|config| config.saturates()),
+            has_tables: layout.axes.iter().any(|axis| axis.tables.is_some()),
+            hands_over: configs.iter().any(hands_over),
             coverage: Coverage::default(),
         }
     }
@@ -337,6 +198,7 @@ impl Bins for OfLayout<'_> {
     fn counts(&self) -> Vec<(String, u64)> {
         let mut counts = named(self.coverage.counts());
         counts.retain(|(name, _)| self.saturates || name != "saturated");
+        counts.retain(|(name, _)| self.has_tables || !OF_TABLES.contains(&name.as_str()));
         if self.hands_over {
             counts.push(("handovers".to_owned(), self.coverage.handovers));
             counts.push(("handovers over".to_owned(), self.coverage.handovers_over));

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use posicast_blocks::axis_shaper::AxisShaperConfig;
 use posicast_blocks::shaper::ShaperConfig;
 use posicast_hdl::machine::AxisShaper;
 use posicast_taps::{Tap, TapTable};
@@ -26,7 +27,7 @@ fn machine() -> MachineShapers {
     let table = TapTable::new(16, vec![half(0), half(9)]).unwrap();
     let shapers = ["x", "y"].map(|axis| AxisShaper {
         axis: axis.to_owned(),
-        config: ShaperConfig::new(32, table.clone()).unwrap(),
+        config: AxisShaperConfig::Taps(ShaperConfig::new(32, table.clone()).unwrap()),
     });
     let words = (0..SAMPLES as i64).map(|n| 1000 * n).collect::<Vec<_>>();
     MachineShapers::new("stage", shapers.into(), vec![words.clone(), words]).unwrap()

@@ -2,7 +2,7 @@
 
 use super::{certificate, family};
 use crate::table::Table;
-use posicast_flow::design::{Control, DesignAxis, DesignErrorTable, Mechanics, StabilityMargins};
+use posicast_flow::design::{Control, DesignAxis, DesignErrorTable, Mechanics, Quantised, StabilityMargins};
 use posicast_flow::text::percent;
 use posicast_machine::unit::AxisUnit;
 use posicast_shaper::analysis::INSENSITIVITY_LIMIT;
@@ -184,6 +184,9 @@ fn convolution(axis: &DesignAxis) -> String {
 
 fn taps(axis: &DesignAxis) -> String {
     let quantised = &axis.quantised;
+    if !quantised.half_sums_samples.is_empty() {
+        return half_sums(quantised);
+    }
     let mut table = Table::new(&["", ">delay", ">coefficient"]);
     for tap in &quantised.taps {
         table.row([
@@ -199,6 +202,18 @@ fn taps(axis: &DesignAxis) -> String {
         quantised.digitise,
         quantised.taps.iter().map(|tap| i64::from(tap.coefficient)).sum::<i64>(),
         table.text("  ")
+    )
+}
+
+/// A cascade by its half sums: the impulses are many, and no table in the hardware.
+fn half_sums(quantised: &Quantised) -> String {
+    let delays: Vec<String> = quantised.half_sums_samples.iter().map(u32::to_string).collect();
+    format!(
+        "\n  cascade of {} at {} Hz, delayed by {} samples: as {}\n",
+        counted(delays.len() as u64, "half sum"),
+        quantised.sample_hz,
+        delays.join(", "),
+        counted(quantised.taps.len() as u64, "tap"),
     )
 }
 

@@ -1,15 +1,19 @@
 //! The hardware of one axis: its shaper, the gains of its loop, its components.
 
-use super::{HardwareError, PERIOD_KEY, SAMPLE_KEY, TimedLoop, pwm_config, pwm_mode};
+use super::{HardwareError, PERIOD_KEY, SAMPLE_KEY, SHAPER_KEY, TimedLoop, pwm_config, pwm_mode};
 use crate::control::{
     ControlSchedule, Derived, NoTravel, TableBounds, gains, loop_lag_s, no_travel, schedule_delay_s, supervision,
 };
 use crate::machine_file::{AxisSection, Machine, PwmMode};
 use crate::plan::{AxisTables, TableFamily};
+use posicast_blocks::axis_shaper::AxisShaperConfig;
+use posicast_blocks::cascade::{CascadeConfig, pass_clocks};
 use posicast_blocks::component::{Component, ComponentError};
 use posicast_blocks::divider::DividerConfig;
 use posicast_blocks::shaper::{ShaperConfig, ShaperConfigError, ShaperMotion};
 use posicast_blocks::stage::Supervision;
+use posicast_shaper::design::Findings;
+use posicast_shaper::digitise::half_sums_samples;
 
 /// The tap table of an axis, and its table family where the modes of the axis move.
 type Tables<'a> = (&'a AxisTables, Option<&'a TableFamily>);
@@ -18,7 +22,7 @@ type Tables<'a> = (&'a AxisTables, Option<&'a TableFamily>);
 #[derive(Debug, Clone)]
 pub struct AxisHardware {
     /// The shaper in the machine's top module; the error gives the reason if it cannot be built or run at the sample rate.
-    pub shaper: Result<ShaperConfig, HardwareError>,
+    pub shaper: Result<AxisShaperConfig, HardwareError>,
     /// Its loop; `None` where it has no controller.
     pub control: Option<AxisLoop>,
 }
@@ -59,7 +63,8 @@ impl AxisHardware {
         of_stage: Option<TimedLoop>,
     ) -> Result<Self, HardwareError> {
         let shaper = shaper(machine, index, axis, tables);
-        let control = control(machine, index, axis, tables, shaper.as_ref().ok(), of_stage)?;
+        let taps = shaper.as_ref().ok().and_then(AxisShaperConfig::taps);
+        let control = control(machine, index, axis, tables, taps, of_stage)?;
         Ok(Self { shaper, control })
     }
 
@@ -79,7 +84,8 @@ impl AxisHardware {
             HardwareError::new(0, key, error)
         };
         let top = self.shaper.as_ref().map_err(Clone::clone)?;
-        let mut components = vec![Component::shaper(component_shaper(axis, top)).map_err(refused)?];
+        let top = top.taps().map(|top| Component::shaper(component_shaper(axis, top)));
+        let mut components: Vec<Component> = top.transpose().map_err(refused)?.into_iter().collect();
         if let Some(encoder) = &axis.encoder {
             let divider = divider()?;
             components.push(Component::pulse_counter(divider, encoder.filter_clocks, encoder.invert).map_err(refused)?);
@@ -104,8 +110,11 @@ fn shaper(
     index: usize,
     axis: &AxisSection,
     tables: Tables<'_>,
-) -> Result<ShaperConfig, HardwareError> {
+) -> Result<AxisShaperConfig, HardwareError> {
     let unfit = |key: &str, reason: String| HardwareError::new(index, key, format!("axis `{}`: {reason}", axis.name));
+    if let Findings::HalfSums(delays_s) = &tables.0.design.findings {
+        return cascade_of(machine, delays_s).map_err(|(key, reason)| unfit(key, reason));
+    }
     let plain = of_axis(machine.fixed_point.command_bits, tables);
     // Both need the motion shaper: the position of a modulo axis wraps, and a family hands over while the axis moves.
     let motion = ShaperMotion {
@@ -123,14 +132,30 @@ fn shaper(
         .fits(u64::from(available))
         .map_err(|error| unfit(SAMPLE_KEY, error.to_string()))?;
     let Some(schedule) = schedule(axis, &config) else {
-        return Ok(config);
+        return Ok(AxisShaperConfig::Taps(config));
     };
     schedule.fits(available).map_err(|error| {
         let step_clocks = pwm_step_clocks(machine);
         let largest_hz = schedule.largest_sample_hz(machine.clock.frequency_hz, step_clocks);
         unfit(SAMPLE_KEY, format!("{error}; allowed: up to {largest_hz} Hz"))
     })?;
-    Ok(config)
+    Ok(AxisShaperConfig::Taps(config))
+}
+
+/// The cascade of half sums with these delays. The error has the key to blame, and the reason.
+fn cascade_of(machine: &Machine, delays_s: &[f64]) -> Result<AxisShaperConfig, (&'static str, String)> {
+    let delays_samples = half_sums_samples(delays_s, machine.clock.sample_hz);
+    let config = CascadeConfig::new(machine.fixed_point.command_bits, delays_samples);
+    let config = config.map_err(|error| (SHAPER_KEY, error.to_string()))?;
+    let (needed, available) = (pass_clocks(config.stages()), machine.clock.clocks_per_sample());
+    if needed > available {
+        let reason = format!(
+            "a sample takes {needed} clocks with {} half sums, but there are {available}: lower the sample rate or raise the clock",
+            config.stages()
+        );
+        return Err((SAMPLE_KEY, reason));
+    }
+    Ok(AxisShaperConfig::Cascade(config))
 }
 
 /// A plain shaper with room for all tables of an axis.

@@ -6,6 +6,7 @@ use posicast_blocks::cascade::CascadeConfig;
 use posicast_shaper::analysis::{residual_vibration, tap_impulses};
 use posicast_shaper::design::kind::ShaperKind;
 use posicast_shaper::design::vibrationless::half_sums_s;
+use posicast_shaper::digitise::half_sums_samples;
 
 /// Fraction of the tap table in which the residual is measured; it holds every cascade of up to 16 half sums exactly.
 const TABLE_FRACTION: u32 = 16;
@@ -34,7 +35,7 @@ pub fn cascade(machine: &Machine, index: usize) -> Result<Option<CascadeHardware
     for mode in &axis.modes {
         let half_sums = half_sums_s(&mode.mode, shaped.order_of(mode), shaped.epsilon());
         let half_sums = half_sums.map_err(|error| refused(&error))?;
-        delays_samples.extend(half_sums.iter().map(|delay_s| (delay_s * sample_hz).round() as u32));
+        delays_samples.extend(half_sums_samples(&half_sums, sample_hz));
     }
     let config = CascadeConfig::new(machine.fixed_point.command_bits, delays_samples);
     let config = config.map_err(|error| refused(&error))?;

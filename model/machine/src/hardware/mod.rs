@@ -26,10 +26,11 @@ pub use stage::{MachineStage, MachineStageError, TimedLoop, pwm_config, pwm_mode
 
 use crate::machine_file::{AxisSection, Machine};
 use crate::plan::MachineDesign;
+use posicast_blocks::axis_shaper::AxisShaperConfig;
 use posicast_blocks::component::Component;
 use posicast_blocks::divider::DividerConfig;
 use posicast_blocks::group::MOST_AXES;
-use posicast_blocks::shaper::{ShaperConfig, WORD_BITS};
+use posicast_blocks::shaper::WORD_BITS;
 use posicast_blocks::stage::StageError;
 
 /// Key of the sample rate.
@@ -119,7 +120,7 @@ impl<'a> Hardware<'a> {
     ///
     /// # Errors
     /// [`HardwareError`] of the first axis whose shaper cannot be built, or cannot run at the sample rate.
-    pub fn shapers(&self) -> Result<Vec<ShaperConfig>, HardwareError> {
+    pub fn shapers(&self) -> Result<Vec<AxisShaperConfig>, HardwareError> {
         self.axes.iter().map(|axis| axis.shaper.clone()).collect()
     }
 

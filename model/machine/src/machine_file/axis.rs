@@ -132,11 +132,11 @@ pub(super) fn read(
         Some(Some((screw_table, mode, screw))) => (given.map(|_| vec![(screw_table, mode)]), Some(screw)),
     };
     let family = modes.as_mut().and_then(|modes| moving::read_family(table, modes, unit));
+    let modulo = read_modulo(table, fixed_point);
     // A shaper that was refused is not compared with the modes, so that its fault is not reported twice.
     if let Some(modes) = modes.as_ref().filter(|_| !matches!(choice, Some(None))) {
-        shaper::check(table, choice.as_ref().and_then(Option::as_ref), modes);
+        shaper::check(table, choice.as_ref().and_then(Option::as_ref), modes, modulo);
     }
-    let modulo = read_modulo(table, fixed_point);
     let encoder = table.table("encoder").map(|t| encoder::read(&t));
     let pwm = table.table("pwm").map(|t| pwm::read(&t, clock));
     let drive = table.table("drive").map(|t| drive::read(&t, unit));

@@ -153,6 +153,7 @@ pub(super) fn read(root: &Table<'_, '_>) -> Option<Machine> {
         stage
     });
     check_inputs(root, axes.as_deref().unwrap_or_default());
+    check_cascades(root, axes.as_deref().unwrap_or_default());
     let link = read_link(root, clock, axes.as_deref());
     // The delays of an inline shaper's axes are always made equal.
     let has_inputs = axes.iter().flatten().any(|axis| axis.input.is_some());
@@ -188,6 +189,25 @@ fn check_inputs(root: &Table<'_, '_>, axes: &[AxisSection]) {
             "a trace of an inline shaper with [link], through which a host reads it",
             "add [link], or remove [axis.trace]",
         );
+    }
+}
+
+/// Checks that a machine with a cascade has shapers alone, whose delays nothing makes equal.
+fn check_cascades(root: &Table<'_, '_>, axes: &[AxisSection]) {
+    let Some(cascade) = axes.iter().find(|axis| axis.shaped().is_cascade()) else {
+        return;
+    };
+    let found = |other: &str| format!("axis {} with structure = \"cascade\" beside {other}", cascade.name);
+    if root.has("stage") {
+        let allowed = "[stage] where every axis has taps, which can be delayed by parts of a sample";
+        let remedy = format!("remove [stage], or `structure` of axis {}", cascade.name);
+        root.contradiction("stage", found("[stage]"), allowed, remedy);
+    }
+    if let Some(other) = axes.iter().find(|axis| !axis.shaped().is_cascade() && axis.has_loop()) {
+        let found = found(&format!("axis {}, which has more than a shaper", other.name));
+        let allowed = "a cascade in a machine of shapers alone";
+        let remedy = format!("remove `structure` of axis {}, or make two machine files", cascade.name);
+        root.contradiction("axis", found, allowed, remedy);
     }
 }
 

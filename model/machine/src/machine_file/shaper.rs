@@ -5,7 +5,7 @@ use super::key::{Default, Key, Values};
 use super::range::NumberRange;
 use super::table::Table;
 use posicast_optimal::{Command, Prefer};
-use posicast_shaper::axis::{AxisMode, DEFAULT_EPSILON, DEFAULT_TOLERANCE, ShaperChoice};
+use posicast_shaper::axis::{AxisMode, DEFAULT_EPSILON, DEFAULT_TOLERANCE, ShaperChoice, ShaperStructure};
 use posicast_shaper::design::kind::ShaperKind;
 use posicast_shaper::design::periodic::BASES;
 use posicast_shaper::digitise::TAPS_MAX;
@@ -39,6 +39,7 @@ const PREFERENCES: [(&str, Prefer); 3] = [
     ("least-residual", Prefer::LeastResidual),
     ("least-delay", Prefer::LeastDelay),
 ];
+const STRUCTURE: &str = "structure";
 const COMMAND: &str = "command";
 const AMPLITUDE_BOUNDS: &str = "amplitude_bounds";
 const TAPS: &str = "taps";
@@ -56,6 +57,13 @@ pub(super) const KEYS: &[Key] = &[
         "Residual of EI kinds at the mode; level at which insensitivity is measured.",
     )
     .default(Default::Number(DEFAULT_TOLERANCE)),
+    Key::new(
+        STRUCTURE,
+        Values::Word(|| ShaperStructure::ALL.map(|(_, name)| name).to_vec()),
+        "What computes the shaper: a table of taps, or half sums in series without a multiplier ([cascade](cascade.md)).",
+    )
+    .rule("`cascade` only where every mode's kind is `vibrationless`, in a machine of shapers alone, without `[stage]`")
+    .default(Default::Word("taps")),
     ORDER,
     Key::new(
         "epsilon",
@@ -162,6 +170,10 @@ pub(super) fn read(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option
     let kind = kind(table, "kind");
     let half_sample_hz = clock.map_or(LOWEST_HZ, |c| c.sample_hz / 2.0);
     let lowest = NumberRange::positive(half_sample_hz).open_above().unit("Hz");
+    let structure = table.choice(STRUCTURE, &ShaperStructure::ALL.map(|(_, name)| name));
+    let structure = ShaperStructure::ALL
+        .into_iter()
+        .find(|(_, name)| Some(*name) == structure);
     let (tolerance, order) = (table.number("tolerance", TOLERANCE), order(table));
     let epsilon = table.number("epsilon", TOLERANCE);
     let base = table
@@ -182,6 +194,7 @@ pub(super) fn read(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option
         taps,
         prefer: prefer.map(|(_, prefer)| prefer),
         kind,
+        structure: structure.map(|(structure, _)| structure).unwrap_or_default(),
         tolerance,
         order,
         epsilon,
@@ -293,6 +306,7 @@ pub(super) fn check(
     axis: &Table<'_, '_>,
     shaper: Option<&(Table<'_, '_>, ShaperChoice)>,
     modes: &[(Table<'_, '_>, AxisMode)],
+    modulo: bool,
 ) {
     let kind = shaper.map(|(_, choice)| choice.kind);
     if axis.lacks("mode") && axis.lacks("mechanics") && kind.is_none_or(ShaperKind::depends_on_modes) {
@@ -322,11 +336,37 @@ pub(super) fn check(
     if let Some((table, choice)) = shaper {
         let own_kinds = modes.iter().filter_map(|(_, mode)| mode.shaper);
         let used: Vec<ShaperKind> = own_kinds.chain([choice.kind]).collect();
+        if choice.structure == ShaperStructure::Cascade {
+            check_cascade(axis, table, modulo, &used);
+        }
         // The base of `periodic` has the order of its own kind.
         let used: Vec<ShaperKind> = used.into_iter().chain(choice.base).collect();
         for key in KEYS {
             check_key(table, key.name, &used);
         }
+    }
+}
+
+/// Tables of an axis that need taps: they hand over to another table, or shape in more than one channel.
+const WITH_TAPS: [&str; 6] = ["family", "encoder", "pwm", "controller", "steps", "input"];
+
+/// Checks that half sums can compute the axis.
+fn check_cascade(axis: &Table<'_, '_>, table: &Table<'_, '_>, modulo: bool, used: &[ShaperKind]) {
+    if let Some(other) = used.iter().find(|kind| **kind != ShaperKind::Vibrationless) {
+        let found = format!("structure = \"cascade\" with kind {other}");
+        let allowed = "a cascade with kind vibrationless, whose impulses are those of half sums";
+        table.contradiction(
+            STRUCTURE,
+            found,
+            allowed,
+            "set `kind = \"vibrationless\"`, or remove `structure`",
+        );
+    }
+    let needs_taps = WITH_TAPS.into_iter().find(|other| axis.has(other));
+    if let Some(other) = needs_taps.or(modulo.then_some("modulo")) {
+        let found = format!("structure = \"cascade\" on an axis with `{other}`");
+        let allowed = "a cascade on an axis that has only a shaper: it has one channel, and its delays cannot be changed while it runs";
+        table.contradiction(STRUCTURE, found, allowed, format!("remove `structure`, or `{other}`"));
     }
 }
 

@@ -6,6 +6,7 @@
 
 use crate::machine_file::{AxisSection, Machine};
 use posicast_optimal::OptimalError;
+use posicast_shaper::axis::{AxisMode, ShaperStructure};
 use posicast_shaper::design::kind::ShaperKind;
 use posicast_shaper::design::{DesignError, JointError, design_axis, optimal};
 use posicast_shaper::digitise::Digitise;
@@ -94,7 +95,7 @@ fn blame_modes(machine: &Machine, error: &DesignError) -> Option<DesignBlame> {
             key: "stage.extra_delay_s".to_owned(),
             ..shaper(of_axis(axis)?)
         }),
-        DesignError::Table(DigitiseError::Fraction { .. }) => Some(DesignBlame {
+        DesignError::Table(DigitiseError::Fraction { .. } | DigitiseError::HalfSums { .. }) => Some(DesignBlame {
             key: "fixed_point.coefficient_fraction".to_owned(),
             ..shaper(0)
         }),
@@ -252,6 +253,9 @@ fn too_long(machine: &Machine, axis: usize) -> Option<DesignBlame> {
 /// Returns the changes that reduce an axis with too many taps to the size of a table, each by itself.
 fn what_fits(machine: &Machine, axis: usize) -> Option<String> {
     let section = &machine.axes[axis];
+    if section.shaped().is_cascade() {
+        return lower_order(machine, section).map(|(order, _)| format!("order = {order} fits a cascade"));
+    }
     let mut found: Vec<String> = rate_that_fits(machine, axis)
         .map(|(text, taps)| format!("{text} ({taps} taps)"))
         .into_iter()
@@ -271,7 +275,28 @@ fn what_fits(machine: &Machine, axis: usize) -> Option<String> {
     {
         found.push(format!("digitise = \"nearest\" ({taps} taps)"));
     }
-    (!found.is_empty()).then(|| format!("each of these fits a table of {TAPS_MAX}: {}", found.join("; ")))
+    let table = (!found.is_empty()).then(|| format!("each of these fits a table of {TAPS_MAX}: {}", found.join("; ")));
+    let cascade = fits_as_cascade(machine, section)
+        .then(|| "structure = \"cascade\" in [axis.shaper] computes it without a table".to_owned());
+    let remedies: Vec<String> = cascade.into_iter().chain(table).collect();
+    (!remedies.is_empty()).then(|| remedies.join("; else "))
+}
+
+/// Whether half sums can compute an axis that has a table now.
+fn fits_as_cascade(machine: &Machine, section: &AxisSection) -> bool {
+    let is_vibrationless = |mode: &AxisMode| section.shaped().kind_of(mode) == ShaperKind::Vibrationless;
+    let only_shapers = |axis: &AxisSection| !axis.has_loop() && axis.input.is_none();
+    let mut changed = section.clone();
+    let Some(shaper) = &mut changed.shaper else {
+        return false;
+    };
+    shaper.structure = ShaperStructure::Cascade;
+    section.modes.iter().all(is_vibrationless)
+        && machine.stage.is_none()
+        && machine.axes.iter().all(only_shapers)
+        && !section.modulo
+        && section.family.is_none()
+        && taps(&changed, machine.fixed_point.digitise, machine).is_some()
 }
 
 /// The largest lower sample rate, in whole hertz, at which an axis has a table, with its number of taps.

@@ -240,3 +240,27 @@ fn a_modulo_axis_wraps_and_has_words_of_18_bits_or_more() {
     // Any travel fits a word that wraps.
     right(&(modulo("24", "true") + "[axis.limits]\ntravel = [-100.0, 100.0]\n"));
 }
+
+#[test]
+fn a_cascade_needs_vibrationless_axes_that_have_shapers_alone() {
+    let vibrationless = SMALL.replace("kind = \"zvd\"", "kind = \"vibrationless\"\nstructure = \"cascade\"");
+    assert!(right(&vibrationless).axes[0].shaped().is_cascade());
+    assert!(!right(SMALL).axes[0].shaped().is_cascade());
+    let found = |text: &str| wrong(text).to_string();
+    let other = found(&SMALL.replace("kind = \"zvd\"", "kind = \"zvd\"\nstructure = \"cascade\""));
+    assert!(other.contains("found structure = \"cascade\" with kind zvd"), "{other}");
+    let mixed = found(&format!("{vibrationless}shaper = \"zv\"\n"));
+    assert!(mixed.contains("found structure = \"cascade\" with kind zv;"), "{mixed}");
+    let measured = found(&format!("{vibrationless}[axis.encoder]\n"));
+    assert!(
+        measured.contains("found structure = \"cascade\" on an axis with `encoder`"),
+        "{measured}"
+    );
+    let stage = found(&format!("{vibrationless}[stage]\n"));
+    assert!(
+        stage.contains("stage: found axis x with structure = \"cascade\" beside [stage]"),
+        "{stage}"
+    );
+    let word = found(&vibrationless.replace("\"cascade\"", "\"fir\""));
+    assert!(word.contains("structure"), "{word}");
+}

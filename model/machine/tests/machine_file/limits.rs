@@ -79,33 +79,33 @@ fn values_out_of_range_are_refused_with_their_place() {
     case(
         "\"monitor\"",
         "\"both\"",
-        "m.toml:40: axis.scale.use of axis x: found \"both\"; allowed: monitor, position",
+        "m.toml:41: axis.scale.use of axis x: found \"both\"; allowed: monitor, position",
     );
-    let expected = "m.toml:39: axis.scale.counts_per_unit of axis x: found 0; allowed: above 0, at most 1e12";
+    let expected = "m.toml:40: axis.scale.counts_per_unit of axis x: found 0; allowed: above 0, at most 1e12";
     case("= 10_000_000", "= 0", expected);
     case(
         "1024",
         "1000",
-        "m.toml:89: axis.trace.samples of axis x: found 1000; allowed: 256, 512, 1024, 2048",
+        "m.toml:90: axis.trace.samples of axis x: found 1000; allowed: 256, 512, 1024, 2048",
     );
     case(
         "1024",
         "1000000000000",
-        "m.toml:89: axis.trace.samples of axis x: found 1000000000000; allowed: 256, 512, 1024, 2048",
+        "m.toml:90: axis.trace.samples of axis x: found 1000000000000; allowed: 256, 512, 1024, 2048",
     );
-    let expected = "m.toml:93: stage.contour_speed: found 0; allowed: above 0, at most 1e9 m/s";
+    let expected = "m.toml:94: stage.contour_speed: found 0; allowed: above 0, at most 1e9 m/s";
     case("contour_speed = 0.1", "contour_speed = 0", expected);
-    let expected = "m.toml:92: stage.extra_delay_s: found 1.1; allowed: at least 0, at most 1 s";
+    let expected = "m.toml:93: stage.extra_delay_s: found 1.1; allowed: at least 0, at most 1 s";
     case("extra_delay_s = 0.0", "extra_delay_s = 1.1", expected);
-    let expected = "m.toml:71: axis.limits.following_error of axis x: found the boolean true; allowed: a number, above 0, at \
+    let expected = "m.toml:72: axis.limits.following_error of axis x: found the boolean true; allowed: a number, above 0, at \
                     most 1e9";
     case("following_error = 0.001", "following_error = true", expected);
-    let expected = "m.toml:79: axis.limits.encoder_lost_command of axis x: found 1; allowed: at least 0, below 1";
+    let expected = "m.toml:80: axis.limits.encoder_lost_command of axis x: found 1; allowed: at least 0, below 1";
     case("encoder_lost_command = 0.25", "encoder_lost_command = 1", expected);
-    let expected = "m.toml:80: axis.limits.watchdog_s of axis x: found 61; allowed: at least 0, at most 6.5535 s, the \
+    let expected = "m.toml:81: axis.limits.watchdog_s of axis x: found 61; allowed: at least 0, at most 6.5535 s, the \
                     65,535 ticks that its word counts: a lower clock.sample_hz allows more";
     case("watchdog_s = 0.5", "watchdog_s = 61", expected);
-    let expected = "m.toml:84: axis.limits.direct_hold_s of axis x: found 0; allowed: above 0, at most 6.5535 s, the \
+    let expected = "m.toml:85: axis.limits.direct_hold_s of axis x: found 0; allowed: above 0, at most 6.5535 s, the \
                     65,535 ticks that its word counts: a lower clock.sample_hz allows more";
     case("direct_hold_s = 0.1", "direct_hold_s = 0", expected);
 }
@@ -118,7 +118,7 @@ fn causes_that_switch_off_are_words_of_a_list() {
     assert_eq!(both.unwrap().off_causes, 0b1000_0000_0000_0111);
     let names = "drive-lost, limit-plus, limit-minus, soft-limit-plus, soft-limit-minus, following-error, deviation, \
                  saturation, encoder-lost, encoder-error, segments, watchdog, schedule";
-    let place = "m.toml:82: axis.limits.off of axis x: found";
+    let place = "m.toml:83: axis.limits.off of axis x: found";
     for wrong_word in ["\"watch-dog\"", "7", "\"emergency-stop\"", "\"group-stop\""] {
         let error = wrong(&off(&format!("[\"deviation\", {wrong_word}]")));
         assert_eq!(error.to_string(), format!("{place} {wrong_word}; allowed: {names}"));
@@ -188,16 +188,16 @@ fn what_needs_another_block_says_which() {
         assert_eq!(error.problems()[0].remedy, remedy);
     }
     let scale = "[axis.scale]\ncounts_per_unit = 10_000_000\nuse = \"monitor\"\n";
-    let expected = "m.toml:72: axis.limits.deviation of axis x: found deviation without [axis.scale]; allowed: deviation on \
+    let expected = "m.toml:73: axis.limits.deviation of axis x: found deviation without [axis.scale]; allowed: deviation on \
                     an axis with [axis.scale], from which the motor may deviate";
     case(scale, "", expected);
-    let expected = "m.toml:75: axis.limits.deviation_s of axis x: found deviation_s without deviation; allowed: deviation_s \
+    let expected = "m.toml:76: axis.limits.deviation_s of axis x: found deviation_s without deviation; allowed: deviation_s \
                     with deviation, which it lets pass for a time";
     case("deviation = 50e-6\n", "", expected);
-    let expected = "m.toml:78: axis.limits.encoder_lost_command of axis x: found encoder_lost_command without encoder_lost_s; \
+    let expected = "m.toml:79: axis.limits.encoder_lost_command of axis x: found encoder_lost_command without encoder_lost_s; \
                     allowed: encoder_lost_command with encoder_lost_s, which switches the monitor on";
     case("encoder_lost_s = 0.02\n", "", expected);
-    let expected = "m.toml:85: axis.limits.soft_limits_after_homing of axis x: found soft_limits_after_homing without travel; \
+    let expected = "m.toml:86: axis.limits.soft_limits_after_homing of axis x: found soft_limits_after_homing without travel; \
                     allowed: soft_limits_after_homing with travel, which are the soft limits";
     case("travel = [-0.1, 0.1]\n", "", expected);
     let alone = |table: &str| wrong(&format!("{SMALL}{table}")).to_string();

@@ -24,6 +24,8 @@ pub enum Findings {
     Simultaneous(Simultaneous),
     /// Conditions of `optimal`, and the proof that no shorter shaper exists.
     Optimal(Optimal),
+    /// Delays in s of the half sums that compute the axis, all modes' in the order of the file.
+    HalfSums(Vec<f64>),
 }
 
 /// Designs the shaper of an axis whose kind serves all modes, and checks it at every mode where the kind promises a zero.

@@ -109,6 +109,19 @@ pub enum DigitiseError {
         /// Largest number that fits, at most [`COEFFICIENT_FRACTION_MAX`].
         largest: u32,
     },
+    /// Half sums have no coefficients: a table of so few fraction bits would not be theirs.
+    #[error(
+        "coefficient_fraction = {fraction}: the impulses of axis {axis}, a cascade, are multiples of 2^-{least}; give at least {least}, or \
+         leave the key out; a cascade has at most {COEFFICIENT_FRACTION_MAX} half sums: lower its `order`, or use fewer modes"
+    )]
+    HalfSums {
+        /// Name of the axis.
+        axis: String,
+        /// Fraction bits of the table.
+        fraction: u32,
+        /// Fraction bits that its weights need.
+        least: u32,
+    },
     /// The rounded taps are not a valid table. This is a defect of this program, which is reported instead of hidden.
     #[error("axis {axis}: {cause}")]
     Table {

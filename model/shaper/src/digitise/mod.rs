@@ -60,6 +60,8 @@ pub enum DigitiseMethod {
     Nearest,
     /// The impulses were designed on the samples.
     OnSamples,
+    /// Each half sum was delayed by whole samples.
+    HalfSums,
 }
 
 impl fmt::Display for DigitiseMethod {
@@ -70,6 +72,7 @@ impl fmt::Display for DigitiseMethod {
             DigitiseMethod::Linear => "linear",
             DigitiseMethod::Nearest => "nearest",
             DigitiseMethod::OnSamples => "as designed, on the samples",
+            DigitiseMethod::HalfSums => "each half sum at the nearest sample",
         })
     }
 }
@@ -139,6 +142,8 @@ impl Digitised {
 
 /// Puts an axis's shaper on the sample grid.
 ///
+/// A cascade has each half sum at the nearest sample, whatever `how`.
+///
 /// For impulses that serve all modes together (`custom`, joint kinds), `modal` is exact only at the first mode of the
 /// file, and becomes `linear` where there is no mode, which [`Digitised::method_used`] reports.
 ///
@@ -147,6 +152,10 @@ impl Digitised {
 /// [`DigitiseError::Nyquist`] for a mode whose frequency is too high for the sample rate;
 /// [`DigitiseError::NoUnitSum`] where the taps of a part cancel.
 pub fn digitise(design: &AxisDesign, how: Digitise, sample_hz: f64) -> Result<Digitised, DigitiseError> {
+    if let Findings::HalfSums(delays_s) = &design.findings {
+        check_delay(design, std::iter::once(&design.impulses), sample_hz)?;
+        return Ok(half_sums(delays_s, sample_hz));
+    }
     let whole = || vec![(&design.impulses, None)];
     let (method_used, sequences) = match (how, &design.parts) {
         _ if matches!(design.findings, Findings::Optimal(_)) => (DigitiseMethod::OnSamples, whole()),
@@ -172,6 +181,28 @@ pub fn digitise(design: &AxisDesign, how: Digitise, sample_hz: f64) -> Result<Di
         method_used,
         taps: real_taps(whole),
     })
+}
+
+/// The taps of half sums in series, each of which is delayed by whole samples: their weights are multiples of 2^−N.
+fn half_sums(delays_s: &[f64], sample_hz: f64) -> Digitised {
+    let mut whole = BTreeMap::from([(0, 1.0)]);
+    for delay_samples in half_sums_samples(delays_s, sample_hz) {
+        let mut half_sum = BTreeMap::from([(0, 0.5)]);
+        *half_sum.entry(delay_samples).or_default() += 0.5;
+        whole = convolve(&whole, &half_sum);
+    }
+    Digitised {
+        method_used: DigitiseMethod::HalfSums,
+        taps: real_taps(whole),
+    }
+}
+
+/// Delays of half sums in whole samples.
+pub fn half_sums_samples(delays_s: &[f64], sample_hz: f64) -> Vec<u32> {
+    delays_s
+        .iter()
+        .map(|delay_s| (delay_s * sample_hz).round() as u32)
+        .collect()
 }
 
 /// Makes taps of weights by delay, without those that are 0.

@@ -8,7 +8,7 @@
 //! machine: it is a constant of the hardware, shared by all axes. Where the file does not fix it, it is the largest
 //! up to 16 at which every *rounded* coefficient of all tables fits 18 bits.
 
-use super::{DigitiseError, Digitised, RealTap, TAPS_MAX};
+use super::{DigitiseError, DigitiseMethod, Digitised, RealTap, TAPS_MAX};
 use posicast_taps::{COEFFICIENT_FRACTION_MAX, COEFFICIENT_MAX, COEFFICIENT_MIN, Tap, TapTable};
 
 /// Values this close to a whole number, and fractions this close to each other, count as equal: weights that are
@@ -38,7 +38,9 @@ pub fn quantise(axes: &[(&str, &Digitised)], fraction: Option<u32>) -> Result<Ve
                     coefficient: i32::try_from(coefficient).unwrap_or(i32::MAX),
                 })
                 .collect();
-            if taps.len() > TAPS_MAX {
+            if digitised.method_used == DigitiseMethod::HalfSums {
+                check_half_sums(axis, digitised, fraction)?;
+            } else if taps.len() > TAPS_MAX {
                 return Err(DigitiseError::Taps {
                     axis: (*axis).to_owned(),
                     found: taps.len(),
@@ -97,6 +99,22 @@ fn integers(taps: &[RealTap], fraction: u32) -> Vec<i64> {
     coefficients
 }
 
+/// Checks that a cascade's weights are whole numbers of the table's steps, because the hardware does not round them.
+fn check_half_sums(axis: &str, digitised: &Digitised, fraction: u32) -> Result<(), DigitiseError> {
+    let is_whole = |bits: u32| {
+        let mut taps = digitised.taps.iter();
+        taps.all(|tap| (tap.weight * f64::from(bits).exp2()).fract() == 0.0)
+    };
+    if is_whole(fraction) {
+        return Ok(());
+    }
+    Err(DigitiseError::HalfSums {
+        axis: axis.to_owned(),
+        fraction,
+        least: (fraction..).find(|bits| is_whole(*bits)).unwrap_or(fraction),
+    })
+}
+
 /// `Σ |c_i/2^F − a_i|` over all delays of both: multiplied by the range of the command, the largest error of the
 /// output that rounding causes.
 pub fn quantising_error(digitised: &Digitised, table: &TapTable) -> f64 {
@@ -123,7 +141,6 @@ pub fn quantising_error(digitised: &Digitised, table: &TapTable) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::digitise::DigitiseMethod;
 
     fn digitised(weights: &[f64]) -> Digitised {
         let taps = weights.iter().enumerate().map(|(delay, &weight)| RealTap {

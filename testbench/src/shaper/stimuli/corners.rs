@@ -3,7 +3,7 @@
 
 use posicast_taps::{COEFFICIENT_MAX, COEFFICIENT_MIN};
 
-use crate::shaper::{Action, AxisLayout};
+use crate::shaper::{Action, TableLayout};
 use Action::{Clear, Reset, Start, StartAlone, Strobe, StrobeExact, Swap, Tap, TapExact, Wait, WaitIdle};
 
 /// Rings of up to this size are filled: filling a larger one takes more clocks than the case is worth.
@@ -11,17 +11,17 @@ const FILLED_RING_BITS: u32 = 9;
 /// Number of clocks over which a second event is moved across a pass of one tap.
 const PASS_SPAN: u32 = 18;
 
-/// Returns the corner cases of a shaper with the sizes of `axis`, each with its name.
-pub fn corners(axis: &AxisLayout) -> Vec<(&'static str, Vec<Action>)> {
+/// Returns the corner cases of a shaper with tables of these sizes, each with its name.
+pub fn corners(tables: &TableLayout) -> Vec<(&'static str, Vec<Action>)> {
     let mut cases = vec![
-        ("rounding", rounding(axis)),
-        ("largest_products", largest_products(axis)),
-        ("sums_beside_one", sums_beside_one(axis)),
+        ("rounding", rounding(tables)),
+        ("largest_products", largest_products(tables)),
+        ("sums_beside_one", sums_beside_one(tables)),
         ("reset_empties_both_banks", reset_empties_both_banks()),
         ("start_and_strobe_across_a_pass", across_a_pass()),
     ];
-    if axis.ring_address_bits <= FILLED_RING_BITS {
-        cases.push(("longest_delay", longest_delay(axis)));
+    if tables.ring_address_bits <= FILLED_RING_BITS {
+        cases.push(("longest_delay", longest_delay(tables)));
     }
     cases
 }
@@ -37,8 +37,8 @@ fn started() -> Vec<Action> {
 }
 
 /// Produces sums just below, at and above one half of an LSB, of both signs.
-fn rounding(axis: &AxisLayout) -> Vec<Action> {
-    let half = 1 << (axis.coefficient_fraction - 1);
+fn rounding(tables: &TableLayout) -> Vec<Action> {
+    let half = 1 << (tables.coefficient_fraction - 1);
     let samples = [1, 1, 0, 0, -1, -1, 0, 0]
         .map(|word| [StrobeExact(word), WaitIdle])
         .concat();
@@ -53,8 +53,8 @@ fn rounding(axis: &AxisLayout) -> Vec<Action> {
 }
 
 /// Multiplies the extreme coefficients by the extreme words.
-fn largest_products(axis: &AxisLayout) -> Vec<Action> {
-    let one = 1 << axis.coefficient_fraction;
+fn largest_products(tables: &TableLayout) -> Vec<Action> {
+    let one = 1 << tables.coefficient_fraction;
     let samples = [-256, -256, 256, 256, -256, 0].map(|x| [Strobe(x), WaitIdle]).concat();
     let mut script = started();
     for extreme in [COEFFICIENT_MIN, COEFFICIENT_MAX] {
@@ -69,13 +69,13 @@ fn largest_products(axis: &AxisLayout) -> Vec<Action> {
 }
 
 /// Loads tables whose sum is one plus or minus a power of two; none of them may become active.
-fn sums_beside_one(axis: &AxisLayout) -> Vec<Action> {
-    let one = 1i64 << axis.coefficient_fraction;
+fn sums_beside_one(tables: &TableLayout) -> Vec<Action> {
+    let one = 1i64 << tables.coefficient_fraction;
     let mut script = started();
     for bit in 0..i64::BITS - 2 {
         for sum in [one + (1 << bit), one - (1 << bit)] {
             let coefficients = split(sum);
-            if coefficients.is_empty() || coefficients.len() > 1 << axis.tap_index_bits {
+            if coefficients.is_empty() || coefficients.len() > 1 << tables.tap_index_bits {
                 continue;
             }
             for bank in [1, 2] {
@@ -83,7 +83,7 @@ fn sums_beside_one(axis: &AxisLayout) -> Vec<Action> {
                 script.extend([Swap(bank), Wait(1), Strobe(1), WaitIdle, Clear]);
             }
         }
-        if split(one + (1 << bit)).len() > 1 << axis.tap_index_bits {
+        if split(one + (1 << bit)).len() > 1 << tables.tap_index_bits {
             break;
         }
     }
@@ -132,10 +132,10 @@ fn across_a_pass() -> Vec<Action> {
 }
 
 /// Plays the longest valid delay, from an empty ring to one that has wrapped.
-fn longest_delay(axis: &AxisLayout) -> Vec<Action> {
+fn longest_delay(tables: &TableLayout) -> Vec<Action> {
     let mut script = started();
     script.extend([Tap(1, 0, 128, 0), Tap(1, 1, 128, -2), Swap(1)]);
-    for sample in 0..(1i64 << axis.ring_address_bits) + 8 {
+    for sample in 0..(1i64 << tables.ring_address_bits) + 8 {
         script.extend([StrobeExact(2 * sample + 1), WaitIdle]);
     }
     script

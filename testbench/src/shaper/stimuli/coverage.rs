@@ -53,21 +53,26 @@ impl Coverage {
         for (axis, seen) in layout.axes.iter().zip(&mut self.seen) {
             let out = clock.expected;
             self.starts += strobe & clock.inputs[axis.start];
-            self.tap_writes += clock.inputs[axis.tap_write] & 1;
             self.valid += out[axis.valid];
-            let now = [
-                out[axis.saturated],
-                out[axis.overrun],
-                out[axis.refused],
-                out[axis.swap_pending],
-                out[axis.bank],
-                out[axis.tap_read_waits],
-            ];
+            let mut now = [0; 6];
+            now[1] = out[axis.overrun];
+            if let Some(tables) = &axis.tables {
+                self.tap_writes += clock.inputs[tables.tap_write] & 1;
+                now = [
+                    out[tables.saturated],
+                    out[axis.overrun],
+                    out[tables.refused],
+                    out[tables.swap_pending],
+                    out[tables.bank],
+                    out[tables.tap_read_waits],
+                ];
+                let is_read = now[5] < seen[5] && out[tables.loaded_coefficient] != 0;
+                self.taps_read_back += u64::from(is_read);
+            }
             let rose = |flag: usize| u64::from(now[flag] > seen[flag]);
             self.saturated += rose(0);
             self.overrun += rose(1);
             self.refused += rose(2);
-            self.taps_read_back += u64::from(now[5] < seen[5] && out[axis.loaded_coefficient] != 0);
             self.swaps_requested += rose(3);
             self.swaps += u64::from(now[4] != seen[4] && now[4] != 0);
             self.handovers += u64::from(now[3] != 0 && now[4] != seen[4]);

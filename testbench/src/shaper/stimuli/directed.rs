@@ -1,6 +1,6 @@
 //! Scripts of directed test cases, by name.
 
-use crate::shaper::{AxisLayout, Layout};
+use crate::shaper::{AxisLayout, Layout, TableLayout};
 use crate::stimuli::Stimuli;
 
 /// One step of a script. All axes do the same, each at its own full scale.
@@ -390,54 +390,54 @@ fn command(axis: &AxisLayout, x: i32, inputs: &mut [u64]) {
 
 fn drive(axis: &AxisLayout, action: Action, inputs: &mut [u64]) {
     match action {
-        Action::Strobe(x) => command(axis, x, inputs),
+        Action::Strobe(x) | Action::SwapAndStrobe(_, x) => command(axis, x, inputs),
         Action::StrobeExact(word) => inputs[axis.x..axis.x + axis.channels].fill(word as u64),
         Action::Start(x) => {
             command(axis, x, inputs);
             inputs[axis.start] = 1;
         }
         Action::StartAlone => inputs[axis.start] = 1,
-        Action::Tap(bank, index, coefficient, delay) => {
-            let one = 1i64 << axis.coefficient_fraction;
-            write_tap(axis, bank, index, i64::from(coefficient) * one / 256, delay, inputs);
-        }
-        Action::TapExact(bank, index, coefficient, delay) => {
-            write_tap(axis, bank, index, i64::from(coefficient), delay, inputs);
-        }
-        Action::Read(bank, index) => {
-            inputs[axis.tap_read] = 1;
-            inputs[axis.tap_bank] = bank;
-            inputs[axis.tap_index] = index;
-        }
-        Action::Swap(bank) => {
-            inputs[axis.swap] = 1;
-            inputs[axis.swap_bank] = bank;
-        }
-        Action::SwapHow(bank, how) => {
-            inputs[axis.swap] = 1;
-            inputs[axis.swap_bank] = bank;
-            if let Some(swap_how) = axis.swap_how {
-                inputs[swap_how] = how;
-            }
-        }
-        Action::SwapAndStrobe(bank, x) => {
-            inputs[axis.swap] = 1;
-            inputs[axis.swap_bank] = bank;
-            command(axis, x, inputs);
-        }
         Action::Clear => inputs[axis.clear_flags] = 1,
         Action::ClearAndStrobe(x) => {
             inputs[axis.clear_flags] = 1;
             command(axis, x, inputs);
         }
-        Action::Reset(_) | Action::Wait(_) | Action::WaitIdle => {}
+        _ => {}
+    }
+    if let Some(tables) = &axis.tables {
+        drive_tables(tables, action, inputs);
     }
 }
 
-fn write_tap(axis: &AxisLayout, bank: u64, index: u64, coefficient: i64, delay: i64, inputs: &mut [u64]) {
-    inputs[axis.tap_write] = 1;
-    inputs[axis.tap_bank] = bank;
-    inputs[axis.tap_index] = index;
-    inputs[axis.tap_coefficient] = coefficient as u64;
-    inputs[axis.tap_delay] = delay as u64;
+fn drive_tables(tables: &TableLayout, action: Action, inputs: &mut [u64]) {
+    match action {
+        Action::Tap(bank, index, coefficient, delay) => {
+            let one = 1i64 << tables.coefficient_fraction;
+            write_tap(tables, bank, index, i64::from(coefficient) * one / 256, delay, inputs);
+        }
+        Action::TapExact(bank, index, coefficient, delay) => {
+            write_tap(tables, bank, index, i64::from(coefficient), delay, inputs);
+        }
+        Action::Read(bank, index) => {
+            inputs[tables.tap_read] = 1;
+            inputs[tables.tap_bank] = bank;
+            inputs[tables.tap_index] = index;
+        }
+        Action::Swap(bank) | Action::SwapHow(bank, _) | Action::SwapAndStrobe(bank, _) => {
+            inputs[tables.swap] = 1;
+            inputs[tables.swap_bank] = bank;
+            if let (Action::SwapHow(_, how), Some(swap_how)) = (action, tables.swap_how) {
+                inputs[swap_how] = how;
+            }
+        }
+        _ => {}
+    }
+}
+
+fn write_tap(tables: &TableLayout, bank: u64, index: u64, coefficient: i64, delay: i64, inputs: &mut [u64]) {
+    inputs[tables.tap_write] = 1;
+    inputs[tables.tap_bank] = bank;
+    inputs[tables.tap_index] = index;
+    inputs[tables.tap_coefficient] = coefficient as u64;
+    inputs[tables.tap_delay] = delay as u64;
 }

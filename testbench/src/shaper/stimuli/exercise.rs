@@ -7,10 +7,13 @@
 //! ```text
 //! tap i was seen:  in a pass over bank 0, not clamped, with 2^F ≤ |c_i · x[n − d_i]| and x[n − d_i] ≠ x[n − d_i ± 1]
 //! ```
+//!
+//! Of a cascade, which has neither banks nor a clamp, each half sum counts in place of a tap: as the impulse 2^−N after its delay.
 
 use std::collections::VecDeque;
 
-use posicast_blocks::shaper::{ShaperConfig, wrap};
+use posicast_blocks::axis_shaper::AxisShaperConfig;
+use posicast_blocks::shaper::wrap;
 use posicast_taps::Tap;
 
 use crate::lockstep::Clock;
@@ -34,8 +37,12 @@ pub struct ShaperExercise {
 struct Shown {
     axis: AxisLayout,
     taps: Vec<Tap>,
+    /// Fraction bits of their coefficients.
+    fraction: u32,
     /// Number of times that each tap was seen.
     seen: Vec<u32>,
+    /// Number of samples that make a full delay line.
+    longest_delay_samples: u32,
     word_bits: u32,
     saturates: bool,
     /// Samples since the last start, newest first, as many as the longest delay needs.
@@ -50,20 +57,22 @@ struct Shown {
 
 impl ShaperExercise {
     /// Creates a record for shapers of these configurations, in the order of the layout.
-    pub fn new<'a>(layout: &Layout, configs: impl IntoIterator<Item = &'a ShaperConfig>) -> Self {
-        let shown = |(axis, config): (&AxisLayout, &ShaperConfig)| Shown {
-            axis: axis.clone(),
-            taps: config.table().taps().to_vec(),
-            seen: vec![0; config.table().taps().len()],
-            word_bits: config.word_bits(),
-            // A position that wraps never saturates.
-            saturates: !config
-                .motion()
-                .is_some_and(|motion| motion.modulo && motion.channels == 1),
-            samples: VecDeque::new(),
-            in_pass: false,
-            results: [0; 3],
-            flags: [[false; 2]; FLAGS.len()],
+    pub fn new<'a>(layout: &Layout, configs: impl IntoIterator<Item = &'a AxisShaperConfig>) -> Self {
+        let shown = |(axis, config): (&AxisLayout, &AxisShaperConfig)| {
+            let (fraction, taps) = seen_taps(config);
+            Shown {
+                axis: axis.clone(),
+                seen: vec![0; taps.len()],
+                taps,
+                fraction,
+                longest_delay_samples: config.longest_delay_samples(),
+                word_bits: config.word_bits(),
+                saturates: config.saturates(),
+                samples: VecDeque::new(),
+                in_pass: false,
+                results: [0; 3],
+                flags: [[false; 2]; FLAGS.len()],
+            }
         };
         Self {
             rst: layout.rst,
@@ -86,22 +95,39 @@ impl ShaperExercise {
     }
 }
 
+/// The taps that must be seen, and their fraction bits.
+fn seen_taps(config: &AxisShaperConfig) -> (u32, Vec<Tap>) {
+    match config {
+        AxisShaperConfig::Taps(config) => (config.coefficient_fraction(), config.table().taps().to_vec()),
+        AxisShaperConfig::Cascade(config) => {
+            let half_sum = |&delay_samples: &u32| Tap {
+                delay_samples,
+                coefficient: 1,
+            };
+            (config.stages(), config.delays_samples().iter().map(half_sum).collect())
+        }
+    }
+}
+
 impl Shown {
     fn observe(&mut self, reset: bool, strobe: bool, clock: &Clock<'_>) {
         let (inputs, outputs) = (clock.inputs, clock.expected);
         let axis = &self.axis;
+        let tables = axis.tables.as_ref();
         let levels = [
-            axis.saturated,
-            axis.overrun,
-            axis.refused,
-            axis.swap_pending,
-            axis.tap_read_waits,
+            tables.map(|tables| tables.saturated),
+            Some(axis.overrun),
+            tables.map(|tables| tables.refused),
+            tables.map(|tables| tables.swap_pending),
+            tables.map(|tables| tables.tap_read_waits),
         ];
         for (flag, output) in self.flags.iter_mut().zip(levels) {
-            flag[usize::from(outputs[output] & 1 != 0)] = true;
+            let level = output.map_or(0, |output| outputs[output] & 1);
+            flag[usize::from(level != 0)] = true;
         }
-        let (busy, bank) = (outputs[axis.busy] & 1 != 0, outputs[axis.bank]);
-        let swaps = outputs[axis.swap_pending] & 1 != 0;
+        let bank = tables.map_or(0, |tables| outputs[tables.bank]);
+        let swaps = tables.is_some_and(|tables| outputs[tables.swap_pending] & 1 != 0);
+        let busy = outputs[axis.busy] & 1 != 0;
         let (start, x) = (inputs[axis.start] & 1 != 0, inputs[axis.x]);
         if outputs[axis.valid] & 1 != 0 {
             if let Some(results) = self.results.get_mut(bank as usize) {
@@ -118,9 +144,8 @@ impl Shown {
             self.in_pass = false;
         }
         if strobe && !reset && (start || !busy) {
-            let longest = self.taps.iter().map(|tap| tap.delay_samples as usize).max();
             self.samples.push_front(wrap(x as i64, self.word_bits));
-            self.samples.truncate(longest.unwrap_or(0) + 2);
+            self.samples.truncate(self.longest_delay_samples as usize + 2);
             self.in_pass = bank == 0 && !swaps;
         }
     }
@@ -133,10 +158,11 @@ impl Shown {
             Some(product)
         });
         // A delay line that is not yet full still contains the start value, so no product is certain.
-        let Some(products) = products.collect::<Option<Vec<i128>>>() else {
+        let is_full = sample(self.longest_delay_samples).is_some();
+        let Some(products) = products.collect::<Option<Vec<i128>>>().filter(|_| is_full) else {
             return;
         };
-        let one = 1i128 << self.axis.coefficient_fraction;
+        let one = 1i128 << self.fraction;
         let largest = one * i128::from(self.axis.largest_word());
         if self.saturates && products.iter().sum::<i128>().abs() >= largest {
             return;
@@ -153,19 +179,23 @@ impl Shown {
         let mut missing = Vec::new();
         for (index, (tap, seen)) in self.taps.iter().zip(&self.seen).enumerate() {
             if *seen < LEAST_TIMES {
-                missing.push(format!(
-                    "tap {index} of the machine's table (after {} samples)",
-                    tap.delay_samples
-                ));
+                let name = match self.axis.tables {
+                    Some(_) => format!("tap {index} of the machine's table"),
+                    None => format!("half sum {index}"),
+                };
+                missing.push(format!("{name} (after {} samples)", tap.delay_samples));
             }
         }
         for (bank, results) in self.results.iter().enumerate() {
-            if *results == 0 {
+            if *results == 0 && (bank == 0 || self.axis.tables.is_some()) {
                 missing.push(format!("a result over bank {bank}"));
             }
         }
         for (flag, [low, high]) in FLAGS.into_iter().zip(self.flags) {
-            let possible = self.saturates || flag != "saturated";
+            let possible = match self.axis.tables {
+                Some(_) => self.saturates || flag != "saturated",
+                None => flag == "overrun",
+            };
             for (level, seen) in [(0, low), (1, high)] {
                 if possible && !seen {
                     missing.push(format!("`{flag}` = {level}"));

@@ -4,20 +4,36 @@ use posicast_blocks::{Direction, Port};
 
 use crate::Error;
 
+/// An input that every shaper has once.
+const OF_EVERY_AXIS: &str = "clear_flags";
+
 /// The ports of one shaper: indices among the inputs and the outputs, and the widths that stimuli depend on.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[allow(missing_docs)] // places, named after the ports
 pub struct AxisLayout {
     /// Name of the axis; empty for a shaper that stands alone.
     pub name: String,
-    /// Number of fraction bits `F` of the tables that are loaded.
-    pub coefficient_fraction: u32,
     pub start: usize,
     /// Index of the command word. For a motion shaper this is the word of channel 0; those of the others follow.
     pub x: usize,
     /// Number of channels, each with its own word.
     pub channels: usize,
     pub clear_flags: usize,
+    /// Width of a command word in bits.
+    pub word_bits: u32,
+    pub valid: usize,
+    pub busy: usize,
+    pub overrun: usize,
+    /// The ports for its tables; a cascade has none.
+    pub tables: Option<TableLayout>,
+}
+
+/// The ports of one shaper that belong to its tables of taps, as in [`AxisLayout`].
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[allow(missing_docs)] // places, named after the ports
+pub struct TableLayout {
+    /// Number of fraction bits `F` of the tables that are loaded.
+    pub coefficient_fraction: u32,
     pub tap_write: usize,
     pub tap_bank: usize,
     pub tap_index: usize,
@@ -28,16 +44,11 @@ pub struct AxisLayout {
     pub swap_bank: usize,
     /// Index of the port; only a motion shaper has it.
     pub swap_how: Option<usize>,
-    /// Width of a command word in bits.
-    pub word_bits: u32,
     /// Width of a tap's index in bits.
     pub tap_index_bits: u32,
     /// Width of a tap's delay in bits.
     pub ring_address_bits: u32,
-    pub valid: usize,
     pub saturated: usize,
-    pub busy: usize,
-    pub overrun: usize,
     pub swap_pending: usize,
     pub bank: usize,
     pub refused: usize,
@@ -77,51 +88,52 @@ impl Layout {
             let at = list.iter().position(|p| p.name == name);
             at.ok_or_else(|| Error::Unlike(format!("no shaper: the port `{name}` is missing")))
         };
-        let prefixes = inputs.iter().filter_map(|p| p.name.strip_suffix("tap_coefficient"));
+        let prefixes = inputs.iter().filter_map(|p| p.name.strip_suffix(OF_EVERY_AXIS));
         let axes = prefixes.map(|prefix| {
             let input = |name: &str| place(&inputs, format!("{prefix}{name}"));
             let output = |name: &str| place(&outputs, format!("{prefix}{name}"));
-            let (x, tap_index, tap_delay) = (
-                input("x").or_else(|_| input("x_0"))?,
-                input("tap_index")?,
-                input("tap_delay")?,
-            );
+            let x = input("x").or_else(|_| input("x_0"))?;
             let channels = (1..3).take_while(|channel| input(&format!("x_{channel}")).is_ok());
+            let tables = || {
+                let (tap_index, tap_delay) = (input("tap_index")?, input("tap_delay")?);
+                Ok::<_, Error>(TableLayout {
+                    coefficient_fraction: coefficient_fraction.clamp(1, 16),
+                    tap_write: input("tap_write")?,
+                    tap_bank: input("tap_bank")?,
+                    tap_index,
+                    tap_coefficient: input("tap_coefficient")?,
+                    tap_delay,
+                    tap_read: input("tap_read")?,
+                    swap: input("swap")?,
+                    swap_bank: input("swap_bank")?,
+                    swap_how: input("swap_how").ok(),
+                    tap_index_bits: inputs[tap_index].width,
+                    ring_address_bits: inputs[tap_delay].width,
+                    saturated: output("saturated")?,
+                    swap_pending: output("swap_pending")?,
+                    bank: output("bank")?,
+                    refused: output("refused")?,
+                    loaded_coefficient: output("loaded_coefficient")?,
+                    tap_read_waits: output("tap_read_waits")?,
+                })
+            };
+            let has_tables = input("tap_coefficient").is_ok();
             Ok(AxisLayout {
                 name: prefix.trim_end_matches('_').to_owned(),
-                coefficient_fraction: coefficient_fraction.clamp(1, 16),
                 start: input("start")?,
                 x,
                 channels: 1 + channels.count(),
-                clear_flags: input("clear_flags")?,
-                tap_write: input("tap_write")?,
-                tap_bank: input("tap_bank")?,
-                tap_index,
-                tap_coefficient: input("tap_coefficient")?,
-                tap_delay,
-                tap_read: input("tap_read")?,
-                swap: input("swap")?,
-                swap_bank: input("swap_bank")?,
-                swap_how: input("swap_how").ok(),
+                clear_flags: input(OF_EVERY_AXIS)?,
                 word_bits: inputs[x].width,
-                tap_index_bits: inputs[tap_index].width,
-                ring_address_bits: inputs[tap_delay].width,
                 valid: output("valid")?,
-                saturated: output("saturated")?,
                 busy: output("busy")?,
                 overrun: output("overrun")?,
-                swap_pending: output("swap_pending")?,
-                bank: output("bank")?,
-                refused: output("refused")?,
-                loaded_coefficient: output("loaded_coefficient")?,
-                tap_read_waits: output("tap_read_waits")?,
+                tables: has_tables.then(tables).transpose()?,
             })
         });
         let axes = axes.collect::<Result<Vec<_>, Error>>()?;
         if axes.is_empty() {
-            return Err(Error::Unlike(
-                "no shaper: there is no port `tap_coefficient`".to_owned(),
-            ));
+            return Err(Error::Unlike(format!("no shaper: there is no port `{OF_EVERY_AXIS}`")));
         }
         Ok(Self {
             rst: place(&inputs, "rst".to_owned())?,

@@ -24,6 +24,6 @@ pub use self::coverage::Coverage;
 pub use self::directed::{Action, Directed, cases, motion_cases};
 pub use self::exercise::ShaperExercise;
 pub use self::fill::Fill;
-pub use self::layout::{AxisLayout, Layout};
+pub use self::layout::{AxisLayout, Layout, TableLayout};
 pub use self::motion::MotionStimuli;
 pub use self::random::Random;

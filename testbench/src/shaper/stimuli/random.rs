@@ -13,7 +13,7 @@
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use crate::shaper::{AxisLayout, Layout};
+use crate::shaper::{AxisLayout, Layout, TableLayout};
 use crate::stimuli::Stimuli;
 use crate::stimuli::table::{Table, pick};
 
@@ -86,7 +86,7 @@ impl Random {
             course: Course::Noise,
             word: 0,
             loading: Loading::Rest(20),
-            table: Table::with_capacity(1 << axis.tap_index_bits.min(8)),
+            table: Table::with_capacity(axis.tables.as_ref().map_or(0, most_taps)),
         };
         Self {
             rng: Xoshiro256PlusPlus::seed_from_u64(seed),
@@ -151,7 +151,8 @@ impl Stimuli for Random {
     fn fill(&mut self, seen: &[u64], inputs: &mut [u64]) {
         // Inputs that are not read in this clock are noise, so that a block that reads them is found.
         for (at, input) in inputs.iter_mut().enumerate() {
-            let read_back = self.axes.iter().any(|state| state.axis.tap_read == at);
+            let mut tables = self.axes.iter().filter_map(|state| state.axis.tables.as_ref());
+            let read_back = tables.any(|tables| tables.tap_read == at);
             *input = if read_back { 0 } else { self.rng.next_u64() };
         }
         let reset = self.clock < 2 || one_in(&mut self.rng, 4000);
@@ -171,8 +172,10 @@ impl AxisState {
         let axis = &self.axis;
         inputs[axis.start] = u64::from(one_in(rng, if strobe { 60 } else { 200 }));
         inputs[axis.clear_flags] = u64::from(one_in(rng, 50));
-        inputs[axis.tap_write] = u64::from(one_in(rng, 1000));
-        inputs[axis.swap] = u64::from(one_in(rng, 1000));
+        if let Some(tables) = &axis.tables {
+            inputs[tables.tap_write] = u64::from(one_in(rng, 1000));
+            inputs[tables.swap] = u64::from(one_in(rng, 1000));
+        }
         if strobe {
             self.advance_word(rng);
             inputs[self.axis.x] = self.word as u64;
@@ -183,12 +186,15 @@ impl AxisState {
     /// Requests a tap, and sets its address in the clocks in which no tap is written: usually near the beginning,
     /// since most tables are short.
     fn read_back(&self, rng: &mut Xoshiro256PlusPlus, inputs: &mut [u64]) {
-        inputs[self.axis.tap_read] = u64::from(one_in(rng, 20));
+        let Some(tables) = &self.axis.tables else {
+            return;
+        };
+        inputs[tables.tap_read] = u64::from(one_in(rng, 20));
         let (bank, index) = (rng.random_range(0..4), rng.random_range(0..8));
         let far = one_in(rng, 8);
-        if inputs[self.axis.tap_write] == 0 {
-            inputs[self.axis.tap_bank] = bank;
-            inputs[self.axis.tap_index] = if far { inputs[self.axis.tap_index] } else { index };
+        if inputs[tables.tap_write] == 0 {
+            inputs[tables.tap_bank] = bank;
+            inputs[tables.tap_index] = if far { inputs[tables.tap_index] } else { index };
         }
     }
 
@@ -225,18 +231,20 @@ impl AxisState {
 
     /// Makes one step of loading a table; leaves `tap_write` and `swap` unchanged if there is nothing to do.
     fn load(&mut self, rng: &mut Xoshiro256PlusPlus, seen: &[u64], inputs: &mut [u64]) {
-        let axis = &self.axis;
+        let Some(tables) = &self.axis.tables else {
+            return;
+        };
         match &mut self.loading {
             Loading::Rest(clocks @ 1..) => *clocks -= 1,
             Loading::Rest(_) => {
-                let size = 1usize << axis.tap_index_bits.min(8);
+                let size = most_taps(tables);
                 let few = rng.random_range(1..=size.min(6));
                 let count = *pick(rng, &[few, few, few, few, few, few, few, size / 4, size / 2 + 1, size]);
                 // A handover lasts for the longest delay: with short tables it ends before something else ends it.
-                let short = axis.swap_how.is_some() && !one_in(rng, 4);
-                let reach_bits = if short { 3 } else { axis.ring_address_bits };
-                self.table.draw(rng, count, axis.coefficient_fraction, reach_bits);
-                let active = seen[axis.bank];
+                let short = tables.swap_how.is_some() && !one_in(rng, 4);
+                let reach_bits = if short { 3 } else { tables.ring_address_bits };
+                self.table.draw(rng, count, tables.coefficient_fraction, reach_bits);
+                let active = seen[tables.bank];
                 // Mostly it is the loadable bank that is not active.
                 let bank = if one_in(rng, 8) {
                     rng.random_range(0..4)
@@ -258,18 +266,18 @@ impl AxisState {
                     };
                     return;
                 };
-                inputs[axis.tap_write] = 1;
-                inputs[axis.tap_bank] = bank;
-                inputs[axis.tap_index] = *index as u64;
-                inputs[axis.tap_coefficient] = i64::from(coefficient) as u64;
-                inputs[axis.tap_delay] = delay;
+                inputs[tables.tap_write] = 1;
+                inputs[tables.tap_bank] = bank;
+                inputs[tables.tap_index] = *index as u64;
+                inputs[tables.tap_coefficient] = i64::from(coefficient) as u64;
+                inputs[tables.tap_delay] = delay;
                 if *wrong == Some(*index) {
                     match rng.random_range(0..5) {
-                        0 => inputs[axis.tap_index] ^= 1,
-                        1 => inputs[axis.tap_coefficient] = i64::from(coefficient + 1) as u64,
-                        2 => inputs[axis.tap_delay] = u64::MAX,
-                        3 => inputs[axis.tap_bank] ^= 3,
-                        _ => inputs[axis.tap_coefficient] = 0,
+                        0 => inputs[tables.tap_index] ^= 1,
+                        1 => inputs[tables.tap_coefficient] = i64::from(coefficient + 1) as u64,
+                        2 => inputs[tables.tap_delay] = u64::MAX,
+                        3 => inputs[tables.tap_bank] ^= 3,
+                        _ => inputs[tables.tap_coefficient] = 0,
                     }
                 }
                 *index += 1;
@@ -278,12 +286,17 @@ impl AxisState {
                 clocks: clocks @ 1.., ..
             } => *clocks -= 1,
             Loading::Ask { bank, .. } => {
-                inputs[axis.swap] = 1;
-                inputs[axis.swap_bank] = if one_in(rng, 10) { rng.random_range(0..4) } else { *bank };
+                inputs[tables.swap] = 1;
+                inputs[tables.swap_bank] = if one_in(rng, 10) { rng.random_range(0..4) } else { *bank };
                 self.loading = Loading::Rest(*pick(rng, &[0, 10, 200, 1000]));
             }
         }
     }
+}
+
+/// Number of taps of the largest table.
+fn most_taps(tables: &TableLayout) -> usize {
+    1 << tables.tap_index_bits.min(8)
 }
 
 fn one_in(rng: &mut Xoshiro256PlusPlus, clocks: u32) -> bool {
