@@ -13,6 +13,7 @@
 //! | [`cascade`] | the cascade of half sums |
 //! | [`divider`] | the divider: counts and clocks to velocity, one bit per clock |
 //! | [`pulse_counter`] | the pulse counter: encoder signals to position, index and velocity |
+//! | [`absolute_encoder`] | the absolute encoder: readings of SSI and BiSS-C to a position |
 //! | [`pwm`] | the PWM: a duty to the gates of a bridge, with dead time and fault path |
 //! | [`sliding_mode`] | the controller: sliding mode, PD, PID |
 //! | [`registers`] | register banks, from their description |
@@ -41,6 +42,7 @@
 //! | [`machine`] | a machine's top module: the shapers of its axes, side by side |
 //! | [`emit`](mod@emit) | the typed emitter: RustHDL's syntax tree as Verilog |
 
+pub mod absolute_encoder;
 pub mod axi_lite_bridge;
 pub mod axis;
 pub mod bus_component;

@@ -43,7 +43,9 @@ fn check_kernel(code: &str, body: &str, broken: &mut Vec<String>) {
     if !code.contains("use crate::prelude::*;") || code.contains("use rust_hdl_core") {
         broken.push("does not take RustHDL from crate::prelude, and so gets the wrong signed_bit_cast".to_owned());
     }
-    if !body.trim_start().starts_with("comment!(\"@module ") {
+    // A long name stands on a line of its own.
+    let first = body.trim_start().strip_prefix("comment!(").unwrap_or_default();
+    if !first.trim_start().starts_with("\"@module ") {
         broken.push("does not begin with the name of its module: comment!(\"@module name\")".to_owned());
     }
     if uses(body, "println") {

@@ -3,6 +3,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
 
+use posicast_blocks::absolute_encoder::{
+    AbsoluteEncoderConfig, AbsoluteFrame, AbsoluteLimits, AbsoluteProtocol, AbsoluteTimes, FrameCheck, FrameStatusBit,
+};
 use posicast_blocks::cascade::CascadeConfig;
 use posicast_blocks::component::Component;
 use posicast_blocks::divider::DividerConfig;
@@ -16,10 +19,10 @@ use posicast_blocks::step_generator::{StepGeneratorConfig, StepLinesActiveLow, S
 use posicast_blocks::trace::TraceConfig;
 use posicast_hdl::emit::{LIBRARY, Module};
 use posicast_hdl::{
-    axi_lite_bridge, axis, cascade, component, divider, divider_share, drive_command, encoder_generator, excitation,
-    group, inline_axis, inline_group, lasting_deviation, linear_scale, probe_line, pulse_counter, pwm, realign,
-    registers, sample_select, schedule, segments, setting_banks, shaper, sliding_mode, spi_bridge, step_generator,
-    time_base, trace, uart_bridge, wishbone_bridge,
+    absolute_encoder, axi_lite_bridge, axis, cascade, component, divider, divider_share, drive_command,
+    encoder_generator, excitation, group, inline_axis, inline_group, lasting_deviation, linear_scale, probe_line,
+    pulse_counter, pwm, realign, registers, sample_select, schedule, segments, setting_banks, shaper, sliding_mode,
+    spi_bridge, step_generator, time_base, trace, uart_bridge, wishbone_bridge,
 };
 use posicast_taps::{Tap, TapTable};
 use std::collections::BTreeMap;
@@ -113,6 +116,39 @@ fn step_generator_config(chance: &mut Chance) -> StepGeneratorConfig {
         .active_low(low)
 }
 
+fn absolute_encoder_config(chance: &mut Chance) -> AbsoluteEncoderConfig {
+    let protocol = chance.one_of(&[AbsoluteProtocol::Ssi, AbsoluteProtocol::BissC]);
+    let status = |chance: &mut Chance| {
+        let bit = FrameStatusBit {
+            place: chance.below(2) as u32,
+            active_low: chance.is(),
+        };
+        chance.is().then_some(bit)
+    };
+    let frame = AbsoluteFrame {
+        leading_bits: chance.below(2) as u32,
+        position_bits: 12 + chance.below(2) as u32,
+        trailing_bits: 2 + chance.below(2) as u32,
+        gray: chance.is(),
+        check: match protocol {
+            AbsoluteProtocol::Ssi => chance.one_of(&[FrameCheck::None, FrameCheck::EvenParity, FrameCheck::OddParity]),
+            AbsoluteProtocol::BissC => FrameCheck::Crc6,
+        },
+        error: status(chance),
+        warning: status(chance),
+    };
+    let times = AbsoluteTimes {
+        half_period_clocks: 4 + chance.below(2),
+        pause_clocks: chance.one_of(&[500, 1000]),
+        answer_clocks: chance.one_of(&[200, 300]),
+    };
+    let limits = AbsoluteLimits {
+        largest_jump: chance.one_of(&[50, 100]),
+        tolerated: 2 + chance.below(2),
+    };
+    AbsoluteEncoderConfig::new(protocol, frame, times, limits).unwrap()
+}
+
 fn inline_axis_config(chance: &mut Chance) -> InlineAxisConfig {
     let low = InlineLinesActiveLow {
         a: chance.is(),
@@ -167,6 +203,7 @@ fn machine(prefix: &str, chance: &mut Chance) -> Vec<Vec<Module>> {
         lasting_deviation::emit(prefix),
         encoder_generator::emit(prefix),
         step_generator::emit(&step_generator_config(chance), prefix),
+        absolute_encoder::emit(&absolute_encoder_config(chance), prefix),
         excitation::emit(prefix),
         uart_bridge::emit(prefix),
         spi_bridge::emit(prefix),

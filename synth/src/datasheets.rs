@@ -36,6 +36,9 @@ const INLINE: [(&str, &str); 4] = pages!["inline" "inline_axis" "pulse_counter" 
 /// Datasheets of machines with a shaper of half sums.
 const CASCADE: [(&str, &str); 1] = pages!["cascade"];
 
+/// Datasheets of blocks that no machine has.
+const ALONE: [(&str, &str); 1] = pages!["absolute_encoder"];
+
 /// Hardware of a machine in addition to the shapers of its top module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum BuiltBlocks {
@@ -97,7 +100,8 @@ pub fn of_block(name: &str, has_registers: bool) -> Vec<(String, String)> {
         .chain(&SPI_LINK))
     .chain(&BUS)
     .chain(&INLINE)
-    .chain(&CASCADE);
+    .chain(&CASCADE)
+    .chain(&ALONE);
     let is_bus = |page: &str| page == "registers" || BUS.iter().any(|(bus, _)| *bus == page);
     let mut pages: Vec<_> = all
         .filter(|(page, _)| *page == name || (has_registers && is_bus(page)))

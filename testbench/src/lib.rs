@@ -24,6 +24,7 @@
 //! - [`yosys`] runs scripts of Yosys and ABC.
 //! - [`wording`] writes counts and times for people.
 
+pub mod absolute_encoder;
 pub mod asynchronous;
 pub mod axi_lite_bridge;
 pub mod axis;
@@ -98,6 +99,7 @@ pub(crate) const REGISTRY: &[RegistryRow] = &[
     axi_lite_bridge::ROW,
     wishbone_bridge::ROW,
     step_generator::ROW,
+    absolute_encoder::ROW,
     inline_axis::ROW,
     parts::TIME_BASE,
     parts::SCHEDULE,

@@ -41,6 +41,7 @@ fn cli_block_kits_pass_their_benches_and_have_no_warning() {
         "pulse_counter",
         "cascade",
         "step_generator",
+        "absolute_encoder",
         "axis",
         "wishbone_bridge",
         "group",
@@ -184,7 +185,7 @@ fn cli_block_that_is_not_there_is_bad_input() {
     };
     refused(&["--block", "flux_capacitor"], "posicast has no such block");
     refused(&["--block", "step_genrator"], "did you mean `step_generator`?");
-    refused(&["--block", "stage"], "choose from: axi_lite_bridge, axis");
+    refused(&["--block", "stage"], "choose from: absolute_encoder, axi_lite_bridge");
     let inline = example("inline.toml");
     refused(&[inline.to_str().unwrap(), "--block", "pwm"], "has no such block");
     refused(&["--block", "pwm", "--hal"], "cannot be used with");

@@ -3,6 +3,7 @@
 //! A model, RustHDL's simulation and a Verilated module all have the same interface, [`ClockedBlock`], through which
 //! lock step compares them.
 
+pub mod absolute_encoder;
 pub mod axi_lite_bridge;
 pub mod axis;
 pub mod axis_shaper;
@@ -56,6 +57,7 @@ pub(crate) use ports::{clocked_block, ports};
 
 /// The blocks with a datasheet, and their ports, which the table in `docs/NAME.md` shows.
 pub const PORT_LISTS: &[(&str, PortList)] = &[
+    ("absolute_encoder", absolute_encoder::PORTS),
     ("axi_lite_bridge", axi_lite_bridge::PORTS),
     ("axis", axis::PORTS),
     ("divider", divider::PORTS),

@@ -1,6 +1,7 @@
 //! The tests of `posicast-blocks` in one program, because linking takes most of the time of a small test program.
 #![cfg(test)]
 
+mod absolute_encoder;
 mod axis;
 mod cascade_prop;
 mod composed;

@@ -5,6 +5,9 @@ use crate::support::random_inputs;
 use crate::support::stage;
 use crate::support::wrong;
 
+use posicast_blocks::absolute_encoder::{
+    AbsoluteEncoder, AbsoluteEncoderConfig, AbsoluteFrame, AbsoluteLimits, AbsoluteProtocol, AbsoluteTimes,
+};
 use posicast_blocks::axis::Axis;
 use posicast_blocks::component::Component;
 use posicast_blocks::composition::{Composed, Composition};
@@ -222,6 +225,30 @@ fn blocks() -> Vec<Tried> {
             "inline_group",
             &[("tick", RARE), ("rst", RARE), ("axis_fault_1", RARE)],
             || InlineGroup::new(InlineGroupConfig::without_registers(2)),
+        ),
+        tried(
+            "absolute_encoder",
+            &[
+                ("rst", &[0]),
+                ("tick", RARE),
+                ("data", &[1, 1, 0]),
+                ("clear_flags", RARE),
+            ],
+            || {
+                let times = AbsoluteTimes {
+                    half_period_clocks: 2,
+                    pause_clocks: 8,
+                    answer_clocks: 16,
+                };
+                let limits = AbsoluteLimits {
+                    largest_jump: 9,
+                    tolerated: 1,
+                };
+                let frame = AbsoluteFrame::biss_c(8);
+                AbsoluteEncoder::new(
+                    &AbsoluteEncoderConfig::new(AbsoluteProtocol::BissC, frame, times, limits).unwrap(),
+                )
+            },
         ),
         tried(
             "linear_scale",

@@ -1,8 +1,9 @@
 //! Checks generated files with independent tools: systemrdl-compiler, the schema of CMSIS-SVD and its parser, FuseSoC
-//! with Verilator and Icarus, LiteX, and cocotb with the bus drivers of cocotb-bus, cocotbext-axi and cocotbext-wishbone.
+//! with Verilator and Icarus, LiteX, cocotb with the bus drivers of cocotb-bus, cocotbext-axi and cocotbext-wishbone, and encoders in cocotb.
 //!
 //! These are Python programs in `.venv` of the repository, which `scripts/install-tools` creates.
 
+mod absolute;
 mod amd;
 mod buses;
 mod litex;

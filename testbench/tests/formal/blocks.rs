@@ -212,6 +212,31 @@ fn formal_a_direction_that_changes_with_the_end_of_a_pulse_is_found() {
 }
 
 #[test]
+fn formal_a_frame_whose_check_is_not_looked_at_is_found() {
+    fails(
+        "absolute_encoder",
+        "right = whole & !word_wrong",
+        "right = whole",
+        "known_failed",
+    );
+}
+
+#[test]
+fn formal_a_clock_of_the_encoder_that_is_too_fast_is_found() {
+    fails("absolute_encoder", "half_timer == HALF", "half_timer != HALF", "");
+}
+
+#[test]
+fn formal_a_position_that_goes_on_without_bound_is_found() {
+    fails(
+        "absolute_encoder",
+        "last_miss = missed == TOLERATED",
+        "last_miss = 1'b0",
+        "",
+    );
+}
+
+#[test]
 fn formal_a_limit_of_the_input_that_is_one_too_high_is_found() {
     fails(
         "inline_axis",
