@@ -22,7 +22,7 @@ use crate::verilog;
 use posicast_blocks::bus_component::BridgedBus;
 use posicast_hdl::emit::{Module, add};
 use posicast_machine::hardware;
-use posicast_machine::spelling::did_you_mean;
+use posicast_machine::spelling::choose_from;
 use posicast_shaper::unit::short;
 use posicast_synth::driver;
 use posicast_synth::kit::{self, Kit};
@@ -245,9 +245,7 @@ fn chosen(all: Vec<Box<dyn Block>>, name: &str, machine: Option<&Path>) -> Resul
     }
     let whose = machine.map_or_else(|| "posicast".to_owned(), |path| path.display().to_string());
     let known: Vec<&str> = names.iter().map(String::as_str).collect();
-    let near = did_you_mean(name, &known, '`').map_or_else(String::new, |question| format!("{question} Else "));
-    Err(Failure::input(format!("--block {name}: {whose} has no such block"))
-        .with_help(format!("{near}choose from: {}", names.join(", "))))
+    Err(Failure::input(format!("--block {name}: {whose} has no such block")).with_help(choose_from(name, &known)))
 }
 
 /// The lists of files for simulators and Quartus.

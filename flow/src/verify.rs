@@ -14,7 +14,7 @@ use crate::hardware::Built;
 use crate::observer::Observer;
 use crate::replay::Recording;
 use crate::{blocks, command, machine, moves, replay};
-use posicast_machine::spelling::did_you_mean;
+use posicast_machine::spelling::choose_from;
 use posicast_synth::package;
 use posicast_testbench::blocks::{Block, Sources};
 use posicast_testbench::linked_stage::DenseLinkBlock;
@@ -354,12 +354,11 @@ fn choose(blocks: Vec<Box<dyn Block>>, names: &[String], source: &Path) -> Resul
     known.dedup();
     if let Some(unknown) = names.iter().find(|name| !known.contains(name)) {
         let names: Vec<&str> = known.iter().map(String::as_str).collect();
-        let near = did_you_mean(unknown, &names, '`').map_or_else(String::new, |question| format!("{question} Else "));
         return Err(Failure::input(format!(
             "--block {unknown}: `{}` has no block of this name",
             source.display()
         ))
-        .with_help(format!("{near}choose from: {}", known.join(", "))));
+        .with_help(choose_from(unknown, &names)));
     }
     let wanted = |name: &str| names.is_empty() || names.iter().any(|chosen| chosen == name);
     Ok(blocks.into_iter().filter(|block| wanted(block.name())).collect())

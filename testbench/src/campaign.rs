@@ -76,7 +76,7 @@ impl<'a> Campaign<'a> {
 }
 
 /// Clocks of the longest pass, which is a handover over two tables.
-fn longest_pass_clocks(configs: &[&AxisShaperConfig]) -> u32 {
+pub(crate) fn longest_pass_clocks(configs: &[&AxisShaperConfig]) -> u32 {
     let passes = configs.iter().map(|config| config.most_pass_clocks());
     passes.max().unwrap_or(0)
 }

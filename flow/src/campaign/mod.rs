@@ -18,7 +18,7 @@ mod waveforms;
 use crate::Outcome;
 use crate::failure::Failure;
 use crate::observer::Observer;
-use posicast_machine::spelling::did_you_mean;
+use posicast_machine::spelling::choose_from;
 use posicast_testbench::blocks::Block;
 use posicast_testbench::shard::{CampaignHead, FORMAT, MachineFileHash, Shard, ShardDocument, UnitResult};
 use posicast_testbench::wording::counted;
@@ -151,10 +151,9 @@ fn only_blocks<T>(list: &mut Vec<T>, wanted: &[String], name: impl Fn(&T) -> &st
     let mut names: Vec<&str> = list.iter().map(&name).collect();
     names.dedup();
     if let Some(unknown) = wanted.iter().find(|wanted| !names.contains(&wanted.as_str())) {
-        let near = did_you_mean(unknown, &names, '`').map_or_else(String::new, |question| format!("{question} Else "));
         return Err(
             Failure::input(format!("--block {unknown}: this campaign has no block of this name"))
-                .with_help(format!("{near}choose from: {}", names.join(", "))),
+                .with_help(choose_from(unknown, &names)),
         );
     }
     list.retain(|of| wanted.is_empty() || wanted.iter().any(|wanted| wanted == name(of)));

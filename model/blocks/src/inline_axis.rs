@@ -316,10 +316,7 @@ impl Moore for InlineAxis {
     }
 
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
-        let Ok(raw) = <&[u64; INPUT_PORTS]>::try_from(inputs) else {
-            return 0;
-        };
-        quiet_at_rest(self, |axis| {
+        quiet_at_rest(self, inputs, |axis, raw| {
             axis.step(&Inputs::from_raw(raw));
         })
     }

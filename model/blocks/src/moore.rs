@@ -75,9 +75,16 @@ pub trait Moore: ClockedBlock {
 }
 
 /// Quiet clocks of a block that only waits while a clock changes nothing: [`FOREVER`] then, else 0. `clock` simulates
-/// one of its clocks with the inputs.
-pub(crate) fn quiet_at_rest<B: Clone + PartialEq>(block: &B, clock: impl FnOnce(&mut B)) -> u64 {
+/// one of its clocks with the inputs, of which there are `N`.
+pub(crate) fn quiet_at_rest<B: Clone + PartialEq, const N: usize>(
+    block: &B,
+    inputs: &[u64],
+    clock: impl FnOnce(&mut B, &[u64; N]),
+) -> u64 {
+    let Ok(raw) = <&[u64; N]>::try_from(inputs) else {
+        return 0;
+    };
     let mut next = block.clone();
-    clock(&mut next);
+    clock(&mut next, raw);
     if next == *block { FOREVER } else { 0 }
 }

@@ -119,6 +119,12 @@ pub fn did_you_mean(found: &str, allowed: &[&str], quote: char) -> Option<String
     }
 }
 
+/// The remedy for a word that is not among the `allowed` ones: the nearest of them, if one is near, and the list.
+pub fn choose_from(found: &str, allowed: &[&str]) -> String {
+    let near = did_you_mean(found, allowed, '`').map_or_else(String::new, |question| format!("{question} Else "));
+    format!("{near}choose from: {}", allowed.join(", "))
+}
+
 /// Whether two words differ only in case and separators.
 pub fn same_letters(one: &str, other: &str) -> bool {
     letters(one) == letters(other)

@@ -76,6 +76,12 @@ impl ShapedAxis<'_> {
         self.shaper.is_some_and(|s| s.structure == ShaperStructure::Cascade)
     }
 
+    /// Whether every mode has a shaper of half sums.
+    pub fn is_vibrationless(&self) -> bool {
+        let mut modes = self.modes.iter();
+        !self.modes.is_empty() && modes.all(|mode| self.kind_of(mode) == ShaperKind::Vibrationless)
+    }
+
     /// Residual bound of `vibrationless`, default 0.05.
     pub fn epsilon(&self) -> f64 {
         self.shaper.and_then(|s| s.epsilon).unwrap_or(DEFAULT_EPSILON)

@@ -87,7 +87,7 @@ impl AbsoluteEncoderCoverage {
         ) else {
             return;
         };
-        let (inputs, now) = (Inputs::from_raw(inputs), outputs_of(outputs));
+        let (inputs, now) = (Inputs::from_raw(inputs), Outputs::from_raw(outputs));
         if let Some((asked, before)) = self.before {
             self.count(&inputs, &asked, &before, &now);
         }
@@ -176,42 +176,5 @@ impl AbsoluteEncoderCoverage {
                 .map(|(_, name, count)| (name, count)),
         );
         counts
-    }
-}
-
-fn outputs_of(raw: &[u64; OUTPUT_PORTS]) -> Outputs {
-    let [
-        clock_out,
-        count,
-        valid,
-        known,
-        extrapolated,
-        busy,
-        line_delay,
-        lost,
-        check_failed,
-        silent,
-        stuck,
-        error_bit,
-        warning_bit,
-        jumped,
-        overrun,
-    ] = *raw;
-    Outputs {
-        clock_out: clock_out != 0,
-        count: count as u32 as i32,
-        valid: valid != 0,
-        known: known != 0,
-        extrapolated: extrapolated != 0,
-        busy: busy != 0,
-        line_delay: line_delay as u16,
-        lost: lost != 0,
-        check_failed: check_failed != 0,
-        silent: silent != 0,
-        stuck: stuck != 0,
-        error_bit: error_bit != 0,
-        warning_bit: warning_bit != 0,
-        jumped: jumped != 0,
-        overrun: overrun != 0,
     }
 }

@@ -3,7 +3,7 @@
 //!
 //! A run begins with a list of readings that reaches every flag, `lost`, and the way out of it.
 
-use posicast_blocks::absolute_encoder::{AbsoluteEncoderConfig, INPUT_PORTS, OUTPUT_PORTS};
+use posicast_blocks::absolute_encoder::{AbsoluteEncoderConfig, INPUT_PORTS, OUTPUT_PORTS, Outputs};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -11,10 +11,6 @@ use super::encoder::{EncoderFault, SimulatedEncoder, allowed_delay, range};
 use crate::stimuli::Stimuli;
 use crate::stimuli::table::pick;
 
-/// Places of outputs.
-const CLOCK_OUT: usize = 0;
-const BUSY: usize = 5;
-const LOST: usize = 7;
 /// Good readings between two faults of the beginning.
 const CALM_READINGS: u64 = 2;
 
@@ -173,15 +169,16 @@ impl Stimuli for AbsoluteEncoderRandom {
         let Ok(seen) = <&[u64; OUTPUT_PORTS]>::try_from(seen) else {
             return;
         };
+        let seen = Outputs::from_raw(seen);
         let calm = self.readings < self.directed();
         let least = self.config.least_tick_clocks();
         *rst = u64::from(self.clock < 2 || (!calm && self.one_in(60 * least)));
         // The outputs of a clock that was not are 0.
-        let clock_out = self.clock == 0 || seen[CLOCK_OUT] != 0;
+        let clock_out = self.clock == 0 || seen.clock_out;
         *data = u64::from(self.encoder.clock(clock_out, &mut self.rng));
 
         self.clocks_to_tick -= 1;
-        self.holds &= seen[BUSY] != 0;
+        self.holds &= seen.busy;
         *tick = u64::from(self.clocks_to_tick == 0 || self.holds);
         if self.clocks_to_tick == 0 {
             self.prepare();
@@ -194,7 +191,7 @@ impl Stimuli for AbsoluteEncoderRandom {
         }
 
         // An axis that is lost waits for a while, and some flags are cleared in the clock in which they come.
-        self.lost_clocks = if seen[LOST] != 0 { self.lost_clocks + 1 } else { 0 };
+        self.lost_clocks = if seen.lost { self.lost_clocks + 1 } else { 0 };
         if !calm && self.one_in(3 * least) {
             self.clears = self.one_in(6);
         }

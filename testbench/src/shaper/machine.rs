@@ -11,7 +11,7 @@ use super::{Layout, OfInstances, OfLayout, ShaperExercise};
 use crate::Error;
 use crate::blocks::reached::AtThePorts;
 use crate::blocks::{Bins, Block, Exercise, Reach, ReachedCount};
-use crate::campaign::Campaign;
+use crate::campaign::{Campaign, longest_pass_clocks};
 use crate::lockstep::{Clock, Instance, SideBySide};
 use crate::stimuli::Stimuli;
 
@@ -62,8 +62,7 @@ impl MachineShapers {
 
     /// Returns the number of clocks of the longest pass of all axes.
     pub fn pass_clocks(&self) -> u32 {
-        let passes = self.shapers.iter().map(|shaper| shaper.config.most_pass_clocks());
-        passes.max().unwrap_or(0)
+        longest_pass_clocks(&self.configs())
     }
 }
 

@@ -275,12 +275,8 @@ impl Moore for AbsoluteEncoder {
     }
 
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
-        let Ok(raw) = <&[u64; INPUT_PORTS]>::try_from(inputs) else {
-            return 0;
-        };
-        let inputs = Inputs::from_raw(raw);
-        quiet_at_rest(self, |block| {
-            block.step(&inputs);
+        quiet_at_rest(self, inputs, |block, raw| {
+            block.step(&Inputs::from_raw(raw));
         })
     }
 }

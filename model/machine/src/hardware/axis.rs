@@ -7,13 +7,12 @@ use crate::control::{
 use crate::machine_file::{AxisSection, Machine, PwmMode};
 use crate::plan::{AxisTables, TableFamily};
 use posicast_blocks::axis_shaper::AxisShaperConfig;
-use posicast_blocks::cascade::{CascadeConfig, pass_clocks};
+use posicast_blocks::cascade::pass_clocks;
 use posicast_blocks::component::{Component, ComponentError};
 use posicast_blocks::divider::DividerConfig;
 use posicast_blocks::shaper::{ShaperConfig, ShaperConfigError, ShaperMotion};
 use posicast_blocks::stage::Supervision;
 use posicast_shaper::design::Findings;
-use posicast_shaper::digitise::half_sums_samples;
 
 /// The tap table of an axis, and its table family where the modes of the axis move.
 type Tables<'a> = (&'a AxisTables, Option<&'a TableFamily>);
@@ -144,9 +143,7 @@ fn shaper(
 
 /// The cascade of half sums with these delays. The error has the key to blame, and the reason.
 fn cascade_of(machine: &Machine, delays_s: &[f64]) -> Result<AxisShaperConfig, (&'static str, String)> {
-    let delays_samples = half_sums_samples(delays_s, machine.clock.sample_hz);
-    let config = CascadeConfig::new(machine.fixed_point.command_bits, delays_samples);
-    let config = config.map_err(|error| (SHAPER_KEY, error.to_string()))?;
+    let config = super::cascade::config(machine, delays_s).map_err(|error| (SHAPER_KEY, error.to_string()))?;
     let (needed, available) = (pass_clocks(config.stages()), machine.clock.clocks_per_sample());
     if needed > available {
         let reason = format!(

@@ -1,11 +1,10 @@
 //! The cascade of half sums for an axis whose shaper is `vibrationless`: the same shaper without a multiplier.
 
 use super::{HardwareError, SHAPER_KEY};
-use crate::machine_file::{AxisSection, Machine};
-use posicast_blocks::cascade::CascadeConfig;
+use crate::machine_file::Machine;
+use posicast_blocks::cascade::{CascadeConfig, CascadeConfigError};
 use posicast_shaper::analysis::{residual_vibration, tap_impulses};
-use posicast_shaper::design::kind::ShaperKind;
-use posicast_shaper::design::vibrationless::half_sums_s;
+use posicast_shaper::design::vibrationless::axis_half_sums_s;
 use posicast_shaper::digitise::half_sums_samples;
 
 /// Fraction of the tap table in which the residual is measured; it holds every cascade of up to 16 half sums exactly.
@@ -25,22 +24,14 @@ pub struct CascadeHardware {
 /// # Errors
 /// [`HardwareError`] for more half sums or longer delays than the hardware has.
 pub fn cascade(machine: &Machine, index: usize) -> Result<Option<CascadeHardware>, HardwareError> {
-    let Some(axis) = machine.axes.get(index).filter(|axis| is_vibrationless(axis)) else {
+    let Some(axis) = machine.axes.get(index).filter(|axis| axis.shaped().is_vibrationless()) else {
         return Ok(None);
     };
     let refused = |error: &dyn std::fmt::Display| HardwareError::new(index, SHAPER_KEY, error);
-    let sample_hz = machine.clock.sample_hz;
-    let shaped = axis.shaped();
-    let mut delays_samples = Vec::new();
-    for mode in &axis.modes {
-        let half_sums = half_sums_s(&mode.mode, shaped.order_of(mode), shaped.epsilon());
-        let half_sums = half_sums.map_err(|error| refused(&error))?;
-        delays_samples.extend(half_sums_samples(&half_sums, sample_hz));
-    }
-    let config = CascadeConfig::new(machine.fixed_point.command_bits, delays_samples);
-    let config = config.map_err(|error| refused(&error))?;
+    let delays_s = axis_half_sums_s(axis.shaped()).map_err(|error| refused(&error))?;
+    let config = config(machine, &delays_s).map_err(|error| refused(&error))?;
     let table = config.tap_table(TABLE_FRACTION).map_err(|error| refused(&error))?;
-    let impulses = tap_impulses(&table, sample_hz);
+    let impulses = tap_impulses(&table, machine.clock.sample_hz);
     let residuals = axis.modes.iter().map(|mode| residual_vibration(&impulses, &mode.mode));
     Ok(Some(CascadeHardware {
         residuals: residuals.collect(),
@@ -48,8 +39,8 @@ pub fn cascade(machine: &Machine, index: usize) -> Result<Option<CascadeHardware
     }))
 }
 
-fn is_vibrationless(axis: &AxisSection) -> bool {
-    let shaped = axis.shaped();
-    let mut modes = axis.modes.iter();
-    !axis.modes.is_empty() && modes.all(|mode| shaped.kind_of(mode) == ShaperKind::Vibrationless)
+/// The cascade of half sums with these delays, each rounded to a sample.
+pub(super) fn config(machine: &Machine, delays_s: &[f64]) -> Result<CascadeConfig, CascadeConfigError> {
+    let delays_samples = half_sums_samples(delays_s, machine.clock.sample_hz);
+    CascadeConfig::new(machine.fixed_point.command_bits, delays_samples)
 }

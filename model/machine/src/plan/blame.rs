@@ -6,7 +6,7 @@
 
 use crate::machine_file::{AxisSection, Machine};
 use posicast_optimal::OptimalError;
-use posicast_shaper::axis::{AxisMode, ShaperStructure};
+use posicast_shaper::axis::ShaperStructure;
 use posicast_shaper::design::kind::ShaperKind;
 use posicast_shaper::design::{DesignError, JointError, design_axis, optimal};
 use posicast_shaper::digitise::Digitise;
@@ -284,14 +284,13 @@ fn what_fits(machine: &Machine, axis: usize) -> Option<String> {
 
 /// Whether half sums can compute an axis that has a table now.
 fn fits_as_cascade(machine: &Machine, section: &AxisSection) -> bool {
-    let is_vibrationless = |mode: &AxisMode| section.shaped().kind_of(mode) == ShaperKind::Vibrationless;
     let only_shapers = |axis: &AxisSection| !axis.has_loop() && axis.input.is_none();
     let mut changed = section.clone();
     let Some(shaper) = &mut changed.shaper else {
         return false;
     };
     shaper.structure = ShaperStructure::Cascade;
-    section.modes.iter().all(is_vibrationless)
+    section.shaped().is_vibrationless()
         && machine.stage.is_none()
         && machine.axes.iter().all(only_shapers)
         && !section.modulo

@@ -106,7 +106,12 @@ pub fn design_axis(axis: ShapedAxis<'_>, sample_hz: f64) -> Result<AxisDesign, D
         }
         None => {
             let (impulses, parts) = per_mode(axis, sample_hz)?;
-            (impulses, parts, half_sums(axis)?)
+            let findings = if axis.is_cascade() {
+                Findings::HalfSums(vibrationless::axis_half_sums_s(axis)?)
+            } else {
+                Findings::None
+            };
+            (impulses, parts, findings)
         }
     };
     Ok(AxisDesign {
@@ -119,16 +124,6 @@ pub fn design_axis(axis: ShapedAxis<'_>, sample_hz: f64) -> Result<AxisDesign, D
 }
 
 /// Designs one shaper per mode and convolves them.
-/// The half sums of an axis that they compute; no findings for another.
-fn half_sums(axis: ShapedAxis<'_>) -> Result<Findings, DesignError> {
-    if !axis.is_cascade() {
-        return Ok(Findings::None);
-    }
-    let of_mode = |mode: &AxisMode| vibrationless::half_sums_s(&mode.mode, axis.order_of(mode), axis.epsilon());
-    let of_modes: Result<Vec<_>, DesignError> = axis.modes.iter().map(of_mode).collect();
-    Ok(Findings::HalfSums(of_modes?.concat()))
-}
-
 fn per_mode(axis: ShapedAxis<'_>, sample_hz: f64) -> Result<(ImpulseSequence, ShaperParts), DesignError> {
     if axis.modes.is_empty() {
         return Err(DesignError::NoModes {

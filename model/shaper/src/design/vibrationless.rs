@@ -26,6 +26,7 @@ use nalgebra::DVector;
 use super::joint_error::JointError;
 use super::kind::{Design, KindRow, Promise, ShaperKind};
 use super::{DesignError, newton};
+use crate::axis::{AxisMode, ShapedAxis};
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::mode::Mode;
 
@@ -99,11 +100,18 @@ pub fn design(mode: &Mode, order: u32, epsilon: f64) -> Result<ImpulseSequence, 
         .map_err(|cause| DesignError::no_sequence(ShaperKind::Vibrationless, mode, cause))
 }
 
-/// Delays of the half sums of one mode in seconds, as many as the order.
+/// Delays of the half sums of an axis in seconds, those of all modes in their order.
 ///
 /// # Errors
 /// Those of [`design`].
-pub fn half_sums_s(mode: &Mode, order: u32, epsilon: f64) -> Result<Vec<f64>, DesignError> {
+pub fn axis_half_sums_s(axis: ShapedAxis<'_>) -> Result<Vec<f64>, DesignError> {
+    let of_mode = |mode: &AxisMode| half_sums_s(&mode.mode, axis.order_of(mode), axis.epsilon());
+    let of_modes: Result<Vec<_>, DesignError> = axis.modes.iter().map(of_mode).collect();
+    Ok(of_modes?.concat())
+}
+
+/// Delays of the half sums of one mode in seconds, as many as the order.
+fn half_sums_s(mode: &Mode, order: u32, epsilon: f64) -> Result<Vec<f64>, DesignError> {
     DesignError::check_mode(mode)?;
     let cascade = optimum(order, epsilon)?;
     let half_sums = cascade

@@ -111,8 +111,8 @@ pub enum DigitiseError {
     },
     /// Half sums have no coefficients: a table of so few fraction bits would not be theirs.
     #[error(
-        "coefficient_fraction = {fraction}: the impulses of axis {axis}, a cascade, are multiples of 2^-{least}; give at least {least}, or \
-         leave the key out; a cascade has at most {COEFFICIENT_FRACTION_MAX} half sums: lower its `order`, or use fewer modes"
+        "coefficient_fraction = {fraction}: the impulses of axis {axis}, a cascade, are multiples of 2^-{least}; give at least {least}, \
+         lower the `order` of that axis, or use fewer modes"
     )]
     HalfSums {
         /// Name of the axis.
