@@ -29,6 +29,8 @@ Examples:
   posicast host /dev/ttyUSB0 status --machine xy_stage/machine.toml
   posicast host /dev/ttyUSB0 move x=0.04,y=-0.02 --machine xy_stage/machine.toml
   posicast host /dev/ttyUSB0 home z --machine printer/machine.toml
+  posicast host /dev/ttyUSB0 probe z -5 --speed 2 --machine measuring_arm/machine.toml
+  posicast host /dev/ttyUSB0 compare scan on --machine line_scan/machine.toml
   posicast host /dev/ttyUSB0 trace x -o x.csv --shake 60 --machine xy_stage/machine.toml
   posicast host /dev/ttyUSB0 load x new.toml --machine xy_stage/machine.toml
   posicast host /dev/ttyUSB0 bypass on --machine router/machine.toml
@@ -87,6 +89,37 @@ enum Action {
         #[command(flatten)]
         line: Line,
     },
+    /// Switch on, move until the capture line has an edge, show where the axes were at it, and switch off; needs [capture]
+    Probe {
+        /// Name of the axis
+        axis: String,
+        /// Largest distance of the edge from where the axis stands, in its unit
+        #[arg(allow_negative_numbers = true)]
+        distance: f64,
+        /// Speed, in the axis's unit per second: the overrun grows with its square
+        #[arg(long, value_name = "SPEED")]
+        speed: f64,
+        #[command(flatten)]
+        faults: Faults,
+        /// Leave the axis on at the end. With watchdog_s it then stops by itself, because nobody kicks its watchdog
+        #[arg(long)]
+        hold: bool,
+        #[command(flatten)]
+        line: Line,
+    },
+    /// Arm the position compare of an axis, disarm it, or show its pulses; needs [axis.compare]
+    Compare {
+        /// Name of the axis
+        axis: String,
+        /// What to do
+        #[arg(value_enum)]
+        switch: CompareSwitch,
+        /// Positions in place of the machine file's row, in the axis's unit: increasing, by 4 counts or more, 256 at most
+        #[arg(long, value_name = "POSITIONS", value_delimiter = ',', allow_negative_numbers = true)]
+        at: Vec<f64>,
+        #[command(flatten)]
+        line: Line,
+    },
     /// Record signals of an axis, tick by tick; needs [axis.trace]
     Trace(TraceArgs),
     /// Load an axis's shaper from another machine file; it is used until the next reset
@@ -115,6 +148,17 @@ enum Action {
         #[command(flatten)]
         line: Line,
     },
+}
+
+/// What a position compare is to do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum CompareSwitch {
+    /// Arm it, with no pulse counted
+    On,
+    /// Disarm it
+    Off,
+    /// Show it
+    Show,
 }
 
 /// Whether there is to be no shaping.
@@ -181,6 +225,8 @@ impl Action {
             Self::Status { line, .. }
             | Self::Move { line, .. }
             | Self::Home { line, .. }
+            | Self::Compare { line, .. }
+            | Self::Probe { line, .. }
             | Self::Load { line, .. }
             | Self::Table { line, .. }
             | Self::Bypass { line, .. } => line,
@@ -233,6 +279,21 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         Action::Home { axis, faults, hold, .. } => {
             actions::home(&machine, (axis, path), [faults.clear_faults, *hold], open)
         }
+        Action::Probe {
+            axis,
+            distance,
+            speed,
+            faults,
+            hold,
+            ..
+        } => actions::probe(
+            &machine,
+            (axis, path),
+            (*distance, *speed),
+            [faults.clear_faults, *hold],
+            open,
+        ),
+        Action::Compare { axis, switch, at, .. } => actions::compare(&machine, (axis, path), (*switch, at), open),
         Action::Trace(trace) => actions::trace(&machine, trace, open),
         Action::Load { axis, from, .. } => {
             let load = |index, table: &TapTable| Ok(open()?.load_table(index, table));
@@ -296,6 +357,7 @@ fn failure(error: HostError) -> Failure {
         HostError::Late { .. }
         | HostError::Refused { .. }
         | HostError::Probe { .. }
+        | HostError::NoEdge { .. }
         | HostError::Deviates { .. }
         | HostError::Standstill
         | HostError::Bypass { .. } => Failure::Check(error.to_string()),

@@ -5,9 +5,9 @@
 
 use crate::emit::{EmitError, Header, Module, add, connect};
 use crate::{
-    axis, divider, divider_share, drive_command, encoder_generator, error_table, excitation, group, inline_axis,
-    inline_group, lasting_deviation, linear_scale, probe_line, pulse_counter, pwm, realign, registers, sample_select,
-    schedule, segments, setting_banks, shaper, sliding_mode, step_generator, time_base, trace,
+    axis, capture, compare, divider, divider_share, drive_command, encoder_generator, error_table, excitation, group,
+    inline_axis, inline_group, lasting_deviation, linear_scale, probe_line, pulse_counter, pwm, realign, registers,
+    sample_select, schedule, segments, setting_banks, shaper, sliding_mode, step_generator, time_base, trace,
 };
 use posicast_blocks::component::{Component, ComponentPart, JoinedBlocks};
 use posicast_blocks::inline_shaper::INLINE_SHAPER;
@@ -82,6 +82,8 @@ fn block(block: &ComponentPart, top: &str, prefix: &str, of: Of) -> Result<Vec<M
         ComponentPart::LinearScale => linear_scale::emit(prefix),
         ComponentPart::Realign => realign::emit(prefix),
         ComponentPart::ProbeLine => probe_line::emit(prefix),
+        ComponentPart::Compare => compare::emit(prefix),
+        ComponentPart::Capture => capture::emit(prefix),
         ComponentPart::LastingDeviation => lasting_deviation::emit(prefix),
         ComponentPart::ErrorTable(config) => error_table::emit(config, prefix),
         ComponentPart::EncoderGenerator => encoder_generator::emit(prefix),

@@ -23,6 +23,7 @@
 //! | [`segments`] | the command FIFO: segments of constant jerk to position, velocity and acceleration |
 //! | [`encoder_generator`] | the internal encoder: quadrature at a set rate, in place of the pins |
 //! | [`step_generator`] | the step generator: the position of every tick to the pulses of a drive with step inputs |
+//! | [`compare`] | the position compare: a pulse when a count passes a position |
 //! | [`inline_axis`], [`inline_group`] | an axis of the inline shaper, and what its axes share |
 //! | [`inline_shaper`] | the inline shaper: from the steps of a controller to shaped steps for the drives |
 //! | [`realign`] | what a host's correction of missing steps does in hardware |
@@ -33,6 +34,7 @@
 //! | [`drive_command`] | the drive command: the duty for the PWM, from the controller or, in direct mode, manual |
 //! | [`linear_scale`] | the linear scale: compares motor and scale; deviation, position, velocity |
 //! | [`lasting_deviation`] | what passes the deviation on to the supervisor once it has lasted |
+//! | [`capture`] | the position capture: the positions of the axes at an edge of a probe |
 //! | [`trace`] | the trace memory: records signals of an axis, tick by tick, around a trigger |
 //! | [`uart_bridge`] | the bridge from a serial line to the registers |
 //! | [`spi_bridge`] | the bridge from SPI to the registers |
@@ -46,7 +48,9 @@ pub mod absolute_encoder;
 pub mod axi_lite_bridge;
 pub mod axis;
 pub mod bus_component;
+pub mod capture;
 pub mod cascade;
+pub mod compare;
 mod compiled;
 pub mod component;
 pub mod divider;

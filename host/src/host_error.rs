@@ -95,6 +95,14 @@ pub enum HostError {
         /// What to do.
         remedy: &'static str,
     },
+    /// The position compare of an axis cannot do what is asked.
+    #[error("axis {axis} compares no positions: {what}")]
+    Compare {
+        /// Name of the axis.
+        axis: String,
+        /// The reason.
+        what: String,
+    },
     /// Time stands still in the stage.
     #[error("the registers answer, but their time stands still: does the hardware have a clock, or is it in reset?")]
     Standstill,
@@ -151,6 +159,14 @@ pub enum HostError {
     /// Homing by a probe failed.
     #[error("axis {axis} was not homed: {what}")]
     Probe {
+        /// Name of the axis.
+        axis: String,
+        /// What was missing.
+        what: &'static str,
+    },
+    /// A probing move found nothing.
+    #[error("axis {axis} found nothing: {what}")]
+    NoEdge {
         /// Name of the axis.
         axis: String,
         /// What was missing.

@@ -25,7 +25,9 @@
 //! | [`HostedStage::switch_on`], [`HostedStage::switch_off`] | outputs on and off |
 //! | [`HostedStage::move_axes`] | a jerk-limited move of several axes that start together |
 //! | [`HostedStage::home`] | homing by a probe |
+//! | [`HostedStage::probe`] | a move that ends at an edge of the capture line |
 //! | [`HostedStage::correct`] | the steps that a motor has lost, as its scale shows them |
+//! | [`HostedStage::arm_compare`], [`HostedStage::disarm_compare`], [`HostedStage::compare_state`] | the position compare |
 //! | [`HostedStage::trace`] | signals of an axis, tick by tick |
 //! | [`HostedStage::load_table`], [`HostedStage::read_table`] | another tap table, while the axis stands or moves; the table in a bank |
 //!
@@ -34,6 +36,7 @@
 //! Calls that wait kick the watchdogs of all axes. If the host stops or the link fails, the watchdog stops the machine (`watchdog_s` of the
 //! machine file).
 
+mod compare;
 mod correct;
 mod error;
 mod home;
@@ -41,6 +44,7 @@ mod host_error;
 mod inline;
 mod link;
 mod moves;
+mod probe;
 mod spi;
 #[cfg(target_os = "linux")]
 mod spidev;
@@ -49,12 +53,14 @@ mod tables;
 mod trace;
 mod udp;
 
+pub use compare::CompareState;
 pub use correct::HostCorrection;
 pub use error::LinkError;
 pub use host_error::HostError;
 pub use inline::{HostedInline, InlineAxisStatus, InlineStatus};
 pub use link::{Line, Link, LinkOptions, LinkStatistics};
 pub use moves::HostMove;
+pub use probe::{CapturedPositions, Probing};
 pub use serialport::SerialPort;
 pub use spi::{SpiLine, SpiTransfer};
 #[cfg(target_os = "linux")]

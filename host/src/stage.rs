@@ -164,8 +164,12 @@ impl<'m, L: Read + Write> HostedStage<'m, L> {
 
     /// A field of an axis's register; names are without the axis.
     pub(crate) fn field(&self, axis: usize, register: &str, field: &str) -> Result<&'m Field, HostError> {
-        let (register, field) = (self.of(axis, register), self.of(axis, field));
-        let fields = self.map.fields(self.register(&register)?);
+        self.stage_field(&self.of(axis, register), &self.of(axis, field))
+    }
+
+    /// A field of a register of the stage's own window.
+    pub(crate) fn stage_field(&self, register: &str, field: &str) -> Result<&'m Field, HostError> {
+        let fields = self.map.fields(self.register(register)?);
         let found = fields.iter().find(|other| other.name == field);
         found.ok_or_else(|| HostError::NoRegister(format!("{}.{field}", register.to_uppercase())))
     }

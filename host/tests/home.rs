@@ -17,7 +17,7 @@ const OPTIONS: LinkOptions = LinkOptions {
     attempts: 2,
 };
 /// The line between host and stage.
-const LINK: LinkSection = LinkSection {
+pub(crate) const LINK: LinkSection = LinkSection {
     line: LinkLine::Uart { baud: 3_000_000 },
     timeout_s: 0.01,
     machine_crc: 0,

@@ -2,9 +2,11 @@
 #![cfg(test)]
 
 mod campaign;
+mod compare;
 mod faults;
 mod home;
 mod inline;
+mod probe;
 mod spi;
 mod stage;
 #[cfg(unix)]

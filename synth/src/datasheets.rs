@@ -19,9 +19,9 @@ const SHAPER: [(&str, &str); 1] = pages!["shaper"];
 /// Datasheets of machines with components.
 const COMPONENTS: [(&str, &str); 5] = pages!["registers" "pulse_counter" "divider" "pwm" "sliding_mode"];
 /// Datasheets of machines with a stage.
-const STAGE: [(&str, &str); 10] = pages![
+const STAGE: [(&str, &str); 12] = pages![
     "stage" "axis" "segments" "drive_command" "linear_scale" "error_table" "encoder_generator" "excitation" "trace"
-    "step_generator"
+    "step_generator" "compare" "capture"
 ];
 /// Datasheets of machines whose stage or inline shaper has a line to a host.
 const LINK: [(&str, &str); 1] = pages!["uart_bridge"];

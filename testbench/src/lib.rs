@@ -31,7 +31,9 @@ pub mod axis;
 pub mod blocks;
 pub mod bus_component;
 pub mod campaign;
+pub mod capture;
 pub mod cascade;
+pub mod compare;
 pub mod component;
 pub mod crosssim;
 pub mod divider;
@@ -99,7 +101,9 @@ pub(crate) const REGISTRY: &[RegistryRow] = &[
     axi_lite_bridge::ROW,
     wishbone_bridge::ROW,
     step_generator::ROW,
+    compare::ROW,
     absolute_encoder::ROW,
+    capture::ROW,
     inline_axis::ROW,
     parts::TIME_BASE,
     parts::SCHEDULE,

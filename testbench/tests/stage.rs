@@ -56,6 +56,7 @@ fn quick(axes: usize) -> StageConfig {
     let mut quick = StageConfig {
         tick: config.tick,
         axes: Vec::new(),
+        capture: None,
         machine_crc: None,
     };
     for (name, mode) in ["x", "y", "z", "phi"].into_iter().zip(modes).take(axes) {

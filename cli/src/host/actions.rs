@@ -1,7 +1,7 @@
 //! The actions of `posicast host` on a stage, and those that an inline shaper has, too.
 
 use super::inline::InlinePort;
-use super::{Port, TraceArgs, axis_of, failure};
+use super::{CompareSwitch, Port, TraceArgs, axis_of, failure};
 use crate::output;
 use posicast_flow::Failure;
 use posicast_flow::design::DesignReport;
@@ -12,6 +12,7 @@ use posicast_host::{HostError, HostMove, RecordedTrace, Shake, TraceRequest};
 use posicast_machine::machine_file::Machine;
 use posicast_system::output::OutputFiles;
 use posicast_taps::TapTable;
+use posicast_testbench::wording::counted;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -97,6 +98,94 @@ pub(super) fn home<'m>(
     };
     homed.and(off).map_err(failure)?;
     super::text::status(&mut stage, false)
+}
+
+pub(super) fn probe<'m>(
+    machine: &'m Machine,
+    (axis, path): (&str, &Path),
+    (distance, speed): (f64, f64),
+    [clears_faults, holds]: [bool; 2],
+    open: impl FnOnce() -> Result<Port<'m>, Failure>,
+) -> Result<(), Failure> {
+    let index = axis_of(machine, axis, path)?;
+    if machine.capture.is_none() {
+        return Err(
+            Failure::input(format!("{}: the stage has no position capture", path.display()))
+                .with_help("add [capture] to the machine file, and generate and build the stage anew"),
+        );
+    }
+    if !distance.is_finite() || distance == 0.0 {
+        return Err(Failure::input(format!("probe: {distance} is not a distance")).with_help("give one other than 0"));
+    }
+    let mut stage = open()?;
+    stage.switch_on(&[index], clears_faults).map_err(failure)?;
+    let probed = stage.probe(HostMove {
+        axis: index,
+        distance,
+        speed: Some(speed),
+    });
+    let off = if holds && probed.is_ok() {
+        Ok(())
+    } else {
+        stage.switch_off(&[index])
+    };
+    let probed = probed.and_then(|probed| off.map(|()| probed)).map_err(failure)?;
+    let in_unit = |axis: usize, counts: i32| {
+        let section = &machine.axes[axis];
+        let length = f64::from(counts) / section.counts_per_unit;
+        format!("{} {}", section.name, section.unit.show(length, 6))
+    };
+    let edge = if probed.found.rising { "rising" } else { "falling" };
+    let positions = probed.found.positions.iter().enumerate();
+    let positions: Vec<String> = positions.map(|(axis, counts)| in_unit(axis, *counts)).collect();
+    let overrun = in_unit(index, probed.overrun);
+    output::print(&format!(
+        "{edge} edge at {}, clock {}; went on by {overrun}\n",
+        positions.join(", "),
+        probed.found.stamp
+    ))
+}
+
+pub(super) fn compare<'m>(
+    machine: &'m Machine,
+    (axis, path): (&str, &Path),
+    (switch, at): (CompareSwitch, &[f64]),
+    open: impl FnOnce() -> Result<Port<'m>, Failure>,
+) -> Result<(), Failure> {
+    let index = axis_of(machine, axis, path)?;
+    if machine.axes[index].compare.is_none() {
+        return Err(
+            Failure::input(format!("{}: axis {axis} has no position compare", path.display()))
+                .with_help("add [axis.compare] to the axis, and generate and build the stage anew"),
+        );
+    }
+    if switch != CompareSwitch::On && !at.is_empty() {
+        return Err(Failure::input("--at: only `on` takes positions".to_owned()).with_help("leave --at out"));
+    }
+    let mut stage = open()?;
+    let state = match switch {
+        CompareSwitch::On => stage.arm_compare(index, (!at.is_empty()).then_some(at)),
+        CompareSwitch::Off => stage.disarm_compare(index),
+        CompareSwitch::Show => stage.compare_state(index),
+    };
+    let state = state.map_err(failure)?;
+    let mut text = format!(
+        "axis {axis}: {}, {}",
+        match (state.armed, state.ready) {
+            (false, _) => "disarmed",
+            (true, false) => "looks for its place",
+            (true, true) => "armed",
+        },
+        counted(state.passes.into(), "pulse")
+    );
+    if state.merged {
+        text.push_str("; pulses merged: pulse_s is longer than the time between two positions");
+    }
+    if state.jumped {
+        text.push_str("; the count jumped, and positions between were not passed");
+    }
+    text.push('\n');
+    output::print(&text)
 }
 
 /// Refuses a file name for the trace if the file cannot be written.

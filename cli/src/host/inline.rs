@@ -74,6 +74,8 @@ pub(super) fn run<'m>(
             text::table(axis, (bank, active), &taps)
         }
         Action::Move { line, .. } => Err(lacks("move", "its controller moves the axes", line)),
+        Action::Probe { line, .. } => Err(lacks("probe", "its controller probes", line)),
+        Action::Compare { line, .. } => Err(lacks("compare", "it has no position compare", line)),
         Action::Home { line, .. } => Err(lacks("home", "its controller homes the axes", line)),
         Action::Trace(trace) => actions::trace_inline(machine, trace, open),
     }

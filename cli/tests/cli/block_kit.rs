@@ -42,6 +42,8 @@ fn cli_block_kits_pass_their_benches_and_have_no_warning() {
         "cascade",
         "step_generator",
         "absolute_encoder",
+        "capture",
+        "compare",
         "axis",
         "wishbone_bridge",
         "group",

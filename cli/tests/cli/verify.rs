@@ -89,7 +89,7 @@ fn cli_verify_selects_blocks_by_name_and_lists_them() {
     assert_eq!((unknown.status.code(), unknown.stdout.is_empty()), (Some(2), true));
     let said = String::from_utf8_lossy(&unknown.stderr).into_owned();
     assert!(
-        said.contains("divdier") && said.contains("cascade, divider, divider_share, drive_command"),
+        said.contains("divdier") && said.contains("cascade, compare, divider, divider_share, drive_command"),
         "{said}"
     );
 }

@@ -9,7 +9,9 @@ pub mod axis;
 pub mod axis_shaper;
 mod bridged;
 pub mod bus_component;
+pub mod capture;
 pub mod cascade;
+pub mod compare;
 pub mod component;
 pub mod composition;
 pub mod divider;
@@ -60,6 +62,8 @@ pub const PORT_LISTS: &[(&str, PortList)] = &[
     ("absolute_encoder", absolute_encoder::PORTS),
     ("axi_lite_bridge", axi_lite_bridge::PORTS),
     ("axis", axis::PORTS),
+    ("capture", capture::PORTS),
+    ("compare", compare::PORTS),
     ("divider", divider::PORTS),
     ("drive_command", drive_command::PORTS),
     ("encoder_generator", encoder_generator::PORTS),

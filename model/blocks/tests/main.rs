@@ -3,7 +3,10 @@
 
 mod absolute_encoder;
 mod axis;
+mod capture;
+mod capture_prop;
 mod cascade_prop;
+mod compare;
 mod composed;
 mod controller_commit;
 mod divider;

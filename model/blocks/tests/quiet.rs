@@ -9,6 +9,8 @@ use posicast_blocks::absolute_encoder::{
     AbsoluteEncoder, AbsoluteEncoderConfig, AbsoluteFrame, AbsoluteLimits, AbsoluteProtocol, AbsoluteTimes,
 };
 use posicast_blocks::axis::Axis;
+use posicast_blocks::capture::Capture;
+use posicast_blocks::compare::Compare;
 use posicast_blocks::component::Component;
 use posicast_blocks::composition::{Composed, Composition};
 use posicast_blocks::divider::{Divider, DividerConfig};
@@ -251,6 +253,17 @@ fn blocks() -> Vec<Tried> {
             },
         ),
         tried(
+            "capture",
+            &[
+                ("rst", RARE),
+                ("filter_clocks", &[0, 3, 40]),
+                ("enable", &[1]),
+                ("take", RARE),
+                ("clear", RARE),
+            ],
+            Capture::new,
+        ),
+        tried(
             "linear_scale",
             &[("tick", RARE), ("velocity_valid", RARE), ("align", RARE), ("rst", RARE)],
             LinearScale::new,
@@ -275,6 +288,24 @@ fn blocks() -> Vec<Tried> {
             "probe_line",
             &[("rst", RARE), ("filter_clocks", &[0, 5, 40])],
             ProbeLine::new,
+        ),
+        tried(
+            "compare",
+            &[
+                ("rst", RARE),
+                ("arm", RARE),
+                ("disarm", RARE),
+                ("count", &[0, 1, 2, 3, 4]),
+                ("first", &[1, 3]),
+                ("spacing", &[2, 4]),
+                ("positions", &[3]),
+                ("hysteresis", &[0, 2]),
+                ("pulse_clocks", &[1, 9]),
+                ("entry", &[0, 4, 9]),
+                ("entry_write", RARE),
+                ("entries_clear", RARE),
+            ],
+            || Compare::new(1),
         ),
         tried("error_table", ERROR_TABLE, || {
             let format = ErrorTableFormat {

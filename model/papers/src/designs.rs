@@ -35,6 +35,7 @@ pub(super) fn axis(shaper: ShaperChoice, modes: &[Mode]) -> AxisSection {
         input: None,
         stepper: None,
         probe: None,
+        compare: None,
         correction: None,
     }
 }

@@ -68,6 +68,18 @@ const CORRECTION: [Fixed; 2] = [
     ("src/posicast_correction.c", include_str!("c/src/posicast_correction.c")),
 ];
 
+/// Files for stages with an axis that has a position compare.
+const COMPARE: [Fixed; 2] = [
+    ("inc/posicast_compare.h", include_str!("c/inc/posicast_compare.h")),
+    ("src/posicast_compare.c", include_str!("c/src/posicast_compare.c")),
+];
+
+/// Files for stages with a position capture.
+const CAPTURE: [Fixed; 2] = [
+    ("inc/posicast_capture.h", include_str!("c/inc/posicast_capture.h")),
+    ("src/posicast_capture.c", include_str!("c/src/posicast_capture.c")),
+];
+
 /// Features of a stage that need additional files.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct With {
@@ -75,6 +87,8 @@ pub(super) struct With {
     pub(super) error_table: bool,
     pub(super) correction: bool,
     pub(super) family: bool,
+    pub(super) compare: bool,
+    pub(super) capture: bool,
 }
 
 pub(super) fn files(with: With) -> Vec<DriverFile> {
@@ -82,11 +96,15 @@ pub(super) fn files(with: With) -> Vec<DriverFile> {
     let error_table = ERROR_TABLE.iter().filter(|_| with.error_table);
     let correction = CORRECTION.iter().filter(|_| with.correction);
     let family = FAMILY.iter().filter(|_| with.family);
+    let compare = COMPARE.iter().filter(|_| with.compare);
+    let capture = CAPTURE.iter().filter(|_| with.capture);
     CORE.iter()
         .chain(bring_up)
         .chain(error_table)
         .chain(correction)
         .chain(family)
+        .chain(compare)
+        .chain(capture)
         .map(|(path, text)| file(path, (*text).to_owned()))
         .collect()
 }

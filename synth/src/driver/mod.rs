@@ -87,6 +87,8 @@ pub fn stage_files(driver: &StageDriver<'_>) -> Vec<DriverFile> {
         error_table: axes.iter().any(|axis| axis.error_table.is_some()),
         correction: axes.iter().any(|axis| axis.corrects),
         family: !driver.families.is_empty(),
+        compare: axes.iter().any(|axis| axis.compare.is_some()),
+        capture: driver.config.capture.is_some(),
     });
     files.push(file("inc/posicast_stage_regs.h", stage_registers::header(driver)));
     files.extend(machine::files(driver));

@@ -43,7 +43,7 @@ pub(super) fn header(driver: &StageDriver<'_>) -> String {
     settings(&mut text);
     loops(&mut text, driver);
     bring_up(&mut text, driver);
-    error_tables(&mut text, driver);
+    parts_of_axes(&mut text, driver);
     text.push_str("\n/* ---- Window 0: the stage ---- */\n");
     for register in map.registers().iter().filter(|register| register.offset < WINDOW_WORDS) {
         macros::register(&mut text, STAGE, register, map.fields(register), &Place::Fixed);
@@ -142,25 +142,23 @@ fn bring_up(text: &mut String, driver: &StageDriver<'_>) {
     let _ = writeln!(text, "#define POSICAST_BRING_UP_AXES {mask:#x}u");
 }
 
-/// Writes which axes have an error table, and which are corrected, if one does.
-fn error_tables(text: &mut String, driver: &StageDriver<'_>) {
-    let axes = driver.config.axes.iter().enumerate();
-    let mask: u32 = axes
-        .filter(|(_, axis)| axis.error_table.is_some())
-        .map(|(place, _)| 1 << place)
-        .sum();
-    if mask != 0 {
-        text.push_str("\n/* Mask of the axes with an error table. */\n");
-        let _ = writeln!(text, "#define POSICAST_ERROR_TABLE_AXES {mask:#x}u");
-    }
-    let axes = driver.config.axes.iter().enumerate();
-    let mask: u32 = axes
-        .filter(|(_, axis)| axis.corrects)
-        .map(|(place, _)| 1 << place)
-        .sum();
-    if mask != 0 {
-        text.push_str("\n/* Mask of the axes whose missing steps are corrected. */\n");
-        let _ = writeln!(text, "#define POSICAST_CORRECTION_AXES {mask:#x}u");
+/// A part that not every axis has: name, which axes have it, and whether an axis does.
+type PartOfAxis = (&'static str, &'static str, fn(&StageAxis) -> bool);
+
+/// Writes which axes have a part that not every axis has, if one does.
+fn parts_of_axes(text: &mut String, driver: &StageDriver<'_>) {
+    let parts: [PartOfAxis; 3] = [
+        ("ERROR_TABLE", "with an error table", |axis| axis.error_table.is_some()),
+        ("CORRECTION", "whose missing steps are corrected", |axis| axis.corrects),
+        ("COMPARE", "with a position compare", |axis| axis.compare.is_some()),
+    ];
+    for (name, which, has) in parts {
+        let axes = driver.config.axes.iter().enumerate();
+        let mask: u32 = axes.filter(|(_, axis)| has(axis)).map(|(place, _)| 1 << place).sum();
+        if mask != 0 {
+            let _ = writeln!(text, "\n/* Mask of the axes {which}. */");
+            let _ = writeln!(text, "#define POSICAST_{name}_AXES {mask:#x}u");
+        }
     }
 }
 

@@ -1,5 +1,7 @@
 /* A program that homes an axis with steps by its probe, and gives it the steps that its drive has lost. */
 #include "pipe.h"
+#include "posicast_capture.h"
+#include "posicast_compare.h"
 #include "posicast_correction.h"
 #include "posicast_homing.h"
 
@@ -66,6 +68,62 @@ static void correcting(posicast_stage *stage)
     result("causes", posicast_causes(stage, X));
 }
 
+/* Moves to a position, which counts from the origin. */
+static void moves_to(posicast_stage *stage, int32_t position)
+{
+    const int32_t target = COUNTS(position) + 256 * posicast_origin(stage, X);
+
+    need("a move", posicast_queue_move(stage, X, target, limits_of(X)), POSICAST_OK);
+    need("its start", posicast_start(stage, 1u << X), POSICAST_OK);
+    need("its end", posicast_wait_at_rest(stage, 1u << X, LONG), POSICAST_OK);
+    need("rest", posicast_wait_ticks(stage, 400), POSICAST_OK);
+}
+
+static void comparing(posicast_stage *stage)
+{
+    const posicast_row row = {1600, 50, 10};
+    const posicast_row none = {1600, 50, 0};
+    const posicast_row far = {INT32_MIN, 50, 10};
+    const int32_t list[] = {1850, 1854, 1900};
+    const int32_t close[] = {1850, 1853};
+
+    moves_to(stage, 1575);
+    need("no compare", posicast_compare_row(stage, Y, &row, LONG), POSICAST_BAD_ARGUMENT);
+    need("no position", posicast_compare_row(stage, X, &none, LONG), POSICAST_BAD_ARGUMENT);
+    need("beyond the word", posicast_compare_row(stage, X, &far, LONG), POSICAST_BAD_ARGUMENT);
+    need("a row", posicast_compare_row(stage, X, &row, LONG), POSICAST_OK);
+    moves_to(stage, 1825);
+    result("row_passes", posicast_compare_passes(stage, X));
+    need("too close", posicast_compare_list(stage, X, close, 2, LONG), POSICAST_BAD_ARGUMENT);
+    need("a list", posicast_compare_list(stage, X, list, 3, LONG), POSICAST_OK);
+    moves_to(stage, 1875);
+    result("list_passes", posicast_compare_passes(stage, X));
+    result("list_state", posicast_compare_state(stage, X));
+    need("off", posicast_compare_off(stage, X), POSICAST_OK);
+    result("off_state", posicast_compare_state(stage, X) & POSICAST_AXIS_COMPARE_STATE_COMPARE_ARMED_MSK);
+}
+
+static void probing(posicast_stage *stage)
+{
+    const posicast_way way = {slowly(100), COUNTS(300)};
+    const posicast_way back = {slowly(100), COUNTS(-20)};
+    posicast_edge edge;
+    int32_t overrun;
+
+    need("a touch", posicast_probe(stage, X, &way, &edge, &overrun, LONG), POSICAST_OK);
+    result("edge_x", edge.positions[X]);
+    result("origin_now", posicast_origin(stage, X));
+    result("edge_y", edge.positions[Y]);
+    result("edge_rises", edge.rising);
+    result("overrun", overrun);
+    result("stands_at", (int32_t)IORD_POSICAST_AXIS_POSITION(stage->base, X));
+    need("it touches", posicast_probe(stage, X, &way, &edge, &overrun, LONG), POSICAST_NO_REFERENCE);
+    moves_to(stage, 1900);
+    need("nothing there", posicast_probe(stage, X, &back, &edge, &overrun, LONG), POSICAST_NO_REFERENCE);
+    result("edges", posicast_captured_edges(stage));
+    need("no more", posicast_take_edge(stage, &edge), POSICAST_NO_REFERENCE);
+}
+
 int main(void)
 {
     posicast_stage stage;
@@ -74,5 +132,7 @@ int main(void)
     stage.pause = pause_here;
     homing(&stage);
     correcting(&stage);
+    comparing(&stage);
+    probing(&stage);
     return 0;
 }

@@ -1,11 +1,14 @@
 //! Checks generated files with independent tools: systemrdl-compiler, the schema of CMSIS-SVD and its parser, FuseSoC
-//! with Verilator and Icarus, LiteX, cocotb with the bus drivers of cocotb-bus, cocotbext-axi and cocotbext-wishbone, and encoders in cocotb.
+//! with Verilator and Icarus, LiteX, cocotb with the bus drivers of cocotb-bus, cocotbext-axi and cocotbext-wishbone, and encoders, walks
+//! and a probe in cocotb.
 //!
 //! These are Python programs in `.venv` of the repository, which `scripts/install-tools` creates.
 
 mod absolute;
 mod amd;
 mod buses;
+mod capture;
+mod compare;
 mod litex;
 mod vhdl;
 

@@ -8,6 +8,8 @@ use posicast_blocks::component::{Component, ComponentPart as Part, JoinedBlocks}
 use super::Block;
 use crate::Error;
 use crate::axis::AxisBlock;
+use crate::capture::CaptureBlock;
+use crate::compare::CompareBlock;
 use crate::divider::DividerBlock;
 use crate::drive_command::DriveCommandBlock;
 use crate::encoder_generator::EncoderGeneratorBlock;
@@ -117,6 +119,8 @@ fn block_of_part(part: &Part, place: &Place<'_>) -> Result<Option<Box<dyn Block>
         Part::LinearScale => Box::new(LinearScaleBlock::new(prefix, instance)),
         Part::Realign => small(Small::Realign),
         Part::ProbeLine => small(Small::ProbeLine),
+        Part::Compare => Box::new(CompareBlock::new(prefix, instance)),
+        Part::Capture => Box::new(CaptureBlock::new(prefix, instance)),
         Part::LastingDeviation => small(Small::LastingDeviation),
         Part::ErrorTable(config) => Box::new(ErrorTableBlock::new(config.as_ref().clone(), prefix, instance)),
         Part::EncoderGenerator => Box::new(EncoderGeneratorBlock::new(prefix, instance)),

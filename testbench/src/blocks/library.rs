@@ -18,7 +18,9 @@ use posicast_blocks::segments::POSITION_FRACTION;
 use posicast_blocks::shaper::ShaperConfig;
 use posicast_blocks::sliding_mode::{Law, Settings};
 use posicast_blocks::stage::Supervision;
-use posicast_blocks::stage::{Follower, StageAxis, StageConfig, StageErrorTable, StageLoop, StageProbe, StageScale};
+use posicast_blocks::stage::{
+    Follower, StageAxis, StageCapture, StageCompare, StageConfig, StageErrorTable, StageLoop, StageProbe, StageScale,
+};
 use posicast_blocks::step_generator::{StepGeneratorConfig, StepLinesActiveLow, StepMode, StepTimes};
 use posicast_blocks::trace::TraceConfig;
 use posicast_hdl::machine::AxisShaper;
@@ -129,6 +131,24 @@ fn shaper(delays: [u32; 4]) -> Result<ShaperConfig, Error> {
     ShaperConfig::new(32, tap_table(16, &taps)?).map_err(refused)
 }
 
+/// Both edges, a few clocks long.
+const CAPTURE: StageCapture = StageCapture {
+    filter_clocks: 3,
+    rises: true,
+    falls: true,
+};
+
+/// Positions near where the axes of the tests move.
+const COMPARE: StageCompare = StageCompare {
+    first: -20,
+    spacing: 4,
+    positions: 12,
+    rises: true,
+    falls: true,
+    hysteresis: 1,
+    pulse_clocks: 3,
+};
+
 /// Two axes: one with trace memory and test signals, one that is controlled by a linear scale.
 pub(crate) fn stage() -> Result<StageConfig, Error> {
     let axis = |name: &str| -> Result<StageAxis, Error> {
@@ -148,6 +168,7 @@ pub(crate) fn stage() -> Result<StageConfig, Error> {
             supervision: SUPERVISION,
             probe: None,
             corrects: false,
+            compare: None,
             scale: None,
             error_table: None,
             bring_up: None,
@@ -172,6 +193,7 @@ pub(crate) fn stage() -> Result<StageConfig, Error> {
     let mut stage = StageConfig {
         tick: DividerConfig::new(TICK_CLOCKS).map_err(refused)?,
         axes: vec![x, y],
+        capture: None,
         machine_crc: None,
     };
     // This is the shortest tick that is long enough for the schedule, in whole periods.
@@ -181,7 +203,8 @@ pub(crate) fn stage() -> Result<StageConfig, Error> {
 }
 
 /// Three axes with steps, one for each mode of the lines: with trace memory; with a linear scale that watches the steps and shows
-/// which to correct; and with a probe and lines that are active low.
+/// which to correct; and with a probe, a position compare, and lines that are active low.
+/// A line captures the positions of all of them.
 pub(crate) fn stage_with_steps() -> Result<StageConfig, Error> {
     let times = StepTimes {
         pulse_clocks: 5,
@@ -199,6 +222,7 @@ pub(crate) fn stage_with_steps() -> Result<StageConfig, Error> {
             supervision: SUPERVISION,
             probe: None,
             corrects: false,
+            compare: None,
             scale: None,
             error_table: None,
             bring_up: None,
@@ -224,6 +248,7 @@ pub(crate) fn stage_with_steps() -> Result<StageConfig, Error> {
             ..axis("y", StepMode::UpDown, tick_clocks)?
         };
         let mut z = axis("z", StepMode::Quadrature, tick_clocks)?;
+        z.compare = Some(COMPARE);
         z.probe = Some(StageProbe {
             active_low: true,
             filter_clocks: 3,
@@ -234,6 +259,7 @@ pub(crate) fn stage_with_steps() -> Result<StageConfig, Error> {
         Ok(StageConfig {
             tick: DividerConfig::new(tick_clocks).map_err(refused)?,
             axes: vec![x, y, z],
+            capture: Some(CAPTURE),
             machine_crc: None,
         })
     };

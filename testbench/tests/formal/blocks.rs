@@ -68,6 +68,20 @@ fn formal_an_average_that_is_rounded_down_is_found() {
 }
 
 #[test]
+fn formal_a_position_that_is_left_a_count_early_is_found() {
+    is_no_longer_proven(
+        "compare",
+        "fell & has_below & (&below_bits)",
+        "fell & has_below & !(|below_bits)",
+    );
+}
+
+#[test]
+fn formal_entries_of_a_list_that_are_too_near_are_found() {
+    is_no_longer_proven("compare", "LEAST = 33'sd4", "LEAST = 33'sd3");
+}
+
+#[test]
 fn formal_half_a_dead_time_is_found() {
     fails("pwm", "lasts = dead_time;", "lasts = dead_time >> 1;", "dead_time_");
 }
@@ -233,6 +247,26 @@ fn formal_a_position_that_goes_on_without_bound_is_found() {
         "last_miss = missed == TOLERATED",
         "last_miss = 1'b0",
         "",
+    );
+}
+
+#[test]
+fn formal_an_edge_of_a_line_that_was_not_steady_is_found() {
+    fails(
+        "capture",
+        "lasts >= filter_clocks",
+        "lasts + 16'd1 >= filter_clocks",
+        "edge_is_steady",
+    );
+}
+
+#[test]
+fn formal_an_entry_that_is_written_over_is_found() {
+    fails(
+        "capture",
+        "place = oldest + entries_q[3:0]",
+        "place = oldest",
+        "chosen_in_order",
     );
 }
 

@@ -4,6 +4,7 @@
 mod contours;
 mod pictures;
 mod probing;
+mod pulses;
 mod report;
 mod step_lines;
 pub(super) mod verdicts;
@@ -66,6 +67,8 @@ pub(crate) struct ClosedLoop<'a> {
     contours: Option<Contours<'a>>,
     /// The axes that are homed by a probe.
     probed: Vec<probing::Probed>,
+    /// The axes that have a position compare.
+    pulsed: Vec<pulses::Pulsed>,
 }
 
 /// Results of the circle of the first two axes.
@@ -171,6 +174,7 @@ impl<'a> Job<'a> {
             component: self.stage.block.component().clone(),
         };
         let probed = probing::all(self.machine, &hardware, self.seed).map_err(refused)?;
+        let pulsed = pulses::all(self.machine, &hardware, self.seed).map_err(refused)?;
         let lost = || Failure::input("a run of the closed loop is missing");
         let [shaped, unshaped, slower, faster] = moves.try_into().map_err(|_| lost())?;
         let mut contoured = contours.into_iter();
@@ -214,6 +218,7 @@ impl<'a> Job<'a> {
             circles,
             contours,
             probed,
+            pulsed,
         })
     }
 

@@ -13,7 +13,7 @@ use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
 use posicast_testbench::wording::counted;
 
 /// The line between host and stage, where the machine file has none.
-const LINE: LinkSection = LinkSection {
+pub(super) const LINE: LinkSection = LinkSection {
     line: LinkLine::Uart { baud: 3_000_000 },
     timeout_s: 0.01,
     machine_crc: 0,

@@ -20,6 +20,8 @@ impl ClosedLoop<'_> {
         checks.push(self.follows());
         checks.extend(self.kept_steps());
         checks.extend(self.probed());
+        checks.extend(self.pulsed());
+        checks.extend(self.captured());
         checks.extend(self.calmer());
         checks.extend(self.limited());
         checks.extend(self.led_to_true_positions());
@@ -28,6 +30,13 @@ impl ClosedLoop<'_> {
 
     fn moves(&self) -> [&Moved; 4] {
         [&self.shaped, &self.unshaped, &self.slower, &self.faster]
+    }
+
+    /// The simulated machine has no probe; there is no check without a capture.
+    fn captured(&self) -> Option<Check> {
+        let reason = "the simulated machine touches nothing; `posicast verify` plays edges at the block";
+        self.machine.capture?;
+        Some(Check::not_exercised("the capture line takes positions", true, reason))
     }
 
     /// No motor may lose a step; there is no check if no axis has steps.

@@ -2,6 +2,8 @@
 
 use crate::Moore;
 use crate::axis::Axis;
+use crate::capture::Capture;
+use crate::compare::Compare;
 use crate::composition::{Composed, Composition, CompositionError, Part};
 use crate::divider::{Divider, DividerConfig};
 use crate::divider_share::DividerShare;
@@ -71,6 +73,10 @@ pub enum ComponentPart {
     Realign,
     /// The line of a probe.
     ProbeLine,
+    /// The position compare.
+    Compare,
+    /// The position capture, which all axes share.
+    Capture,
     /// A measured error over position, the machine's in bank 0.
     ErrorTable(Box<ErrorTableConfig>),
     /// A source of encoder edges in front of the pulse counter.
@@ -114,6 +120,8 @@ impl ComponentPart {
             Self::LastingDeviation => "lasting_deviation",
             Self::Realign => "realign",
             Self::ProbeLine => "probe_line",
+            Self::Compare => "compare",
+            Self::Capture => "capture",
             Self::ErrorTable(_) => "error_table",
             Self::EncoderGenerator => "encoder_generator",
             Self::Excitation => "excitation",
@@ -163,6 +171,8 @@ impl ComponentPart {
             Self::LastingDeviation => Box::new(LastingDeviation::new()),
             Self::Realign => Box::new(Realign::new()),
             Self::ProbeLine => Box::new(ProbeLine::new()),
+            Self::Compare => Box::new(Compare::new(seed)),
+            Self::Capture => Box::new(Capture::new()),
             Self::ErrorTable(config) => Box::new(ErrorTable::new(config)),
             Self::EncoderGenerator => Box::new(EncoderGenerator::new()),
             Self::Excitation => Box::new(Excitation::new()),

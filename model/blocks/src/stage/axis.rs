@@ -1,6 +1,7 @@
 //! Joins the blocks of an axis: the net of each port, and the inputs that are tied to the machine's constants.
 
 use super::bring_up::TRACED;
+use super::compare;
 use super::config::{Follower, StageAxis, StageLoop};
 use super::registers::{axis_window, hardware};
 use super::steps;
@@ -8,6 +9,7 @@ use crate::Direction;
 use crate::component::{ComponentPart, JoinedBlocks, Wiring};
 use crate::composition::{CompositionError, Part};
 use crate::error_table::EntryUnit;
+use crate::group::MOST_AXES;
 use crate::pwm::PwmConfig;
 use crate::registers::trace;
 
@@ -254,17 +256,19 @@ pub(super) fn input_pins(axis: &StageAxis) -> Vec<&'static str> {
 
 /// Output pins of this axis.
 pub(super) fn output_pins(axis: &StageAxis) -> Vec<&'static str> {
-    match &axis.follower {
+    let compare = axis.compare.map(|_| compare::PIN);
+    let pins = match &axis.follower {
         Follower::Loop(_) => OUTPUT_PINS.to_vec(),
         Follower::Steps(config) => [&config.mode().line_names(), &OUTPUT_PINS_WITH_STEPS[..]].concat(),
-    }
+    };
+    pins.into_iter().chain(compare).collect()
 }
 
 /// Joins the blocks of an axis. The whole has the axis's name; its ports are the nets that registers, stage and pins
 /// need.
 ///
-/// `tick_clocks` are the clocks from tick to tick, for the PWM's watchdog.
-pub(super) fn join(axis: &StageAxis, tick_clocks: u32) -> Result<JoinedBlocks, CompositionError> {
+/// `tick_clocks` are the clocks from tick to tick, for the PWM's watchdog; `axes` is the number of axes of the stage.
+pub(super) fn join(axis: &StageAxis, tick_clocks: u32, axes: usize) -> Result<JoinedBlocks, CompositionError> {
     let shaper = ComponentPart::Shaper(Box::new(axis.shaper.clone()));
     let mut blocks = match &axis.follower {
         Follower::Loop(of) => vec![
@@ -286,6 +290,7 @@ pub(super) fn join(axis: &StageAxis, tick_clocks: u32) -> Result<JoinedBlocks, C
         ],
     };
     blocks.extend(axis.probe.map(|_| ComponentPart::ProbeLine));
+    blocks.extend(axis.compare.map(|_| ComponentPart::Compare));
     if let Some(trace) = axis.bring_up {
         let generator = axis.closed_loop().map(|_| ComponentPart::EncoderGenerator);
         blocks.extend(generator);
@@ -308,7 +313,10 @@ pub(super) fn join(axis: &StageAxis, tick_clocks: u32) -> Result<JoinedBlocks, C
             blocks.push(("lasting_deviation".to_owned(), ComponentPart::LastingDeviation));
         }
     }
-    let (driven, read) = hardware(&axis_window(axis));
+    let (driven, mut read) = hardware(&axis_window(axis));
+    if axis.compare.is_some() && axes < MOST_AXES {
+        read.push(compare::INTERRUPT.0.to_owned());
+    }
     let names = |lists: &[&[&str]]| -> Vec<String> {
         let all = lists.iter().flat_map(|list| list.iter());
         all.map(|name| (*name).to_owned()).collect()
@@ -381,6 +389,7 @@ fn wire(axis: &StageAxis, tick_clocks: u32, block: &ComponentPart, part: Part) -
                 .on("touched", steps::TOUCHED),
             None => part,
         },
+        ComponentPart::Compare => on(part, compare::NETS),
         ComponentPart::LastingDeviation => part
             .tied("limit", watched.deviation_limit.into())
             .tied("ticks", watched.deviation_ticks.into())

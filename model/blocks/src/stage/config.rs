@@ -16,6 +16,7 @@ use crate::stage::Supervision;
 use crate::step_generator::StepGeneratorConfig;
 use crate::trace::TraceConfig;
 
+use super::registers::AXIS_INTERRUPTS;
 use super::schedule::StageSchedule;
 
 /// A stage of one to four axes.
@@ -25,8 +26,21 @@ pub struct StageConfig {
     pub tick: DividerConfig,
     /// Its axes.
     pub axes: Vec<StageAxis>,
+    /// The position capture of all axes, if there is one.
+    pub capture: Option<StageCapture>,
     /// Contents of the register `MACHINE_CRC`, if it has one: the checksum of its machine file.
     pub machine_crc: Option<u32>,
+}
+
+/// The position capture of a stage: the settings after reset.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StageCapture {
+    /// Clocks for which its line must have a new level.
+    pub filter_clocks: u16,
+    /// Whether a rising edge captures.
+    pub rises: bool,
+    /// Whether a falling one does.
+    pub falls: bool,
 }
 
 /// One axis of a stage.
@@ -50,6 +64,8 @@ pub struct StageAxis {
     pub scale: Option<StageScale>,
     /// Its error table.
     pub error_table: Option<StageErrorTable>,
+    /// Its position compare, if it has one.
+    pub compare: Option<StageCompare>,
     /// Aids for bring-up, if it has them: trace memory, test signals, an internal encoder.
     pub bring_up: Option<TraceConfig>,
 }
@@ -131,6 +147,25 @@ pub struct StageScale {
     pub closes_loop: bool,
     /// Whether its direction is reversed after reset.
     pub invert: bool,
+}
+
+/// The position compare of an axis: the settings after reset. Positions are counts since reset.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StageCompare {
+    /// The lowest position of the row.
+    pub first: i32,
+    /// Distance of two positions in counts, at least 1.
+    pub spacing: u32,
+    /// Number of positions.
+    pub positions: u32,
+    /// Whether a position that is passed upward gives a pulse.
+    pub rises: bool,
+    /// Whether one that is passed downward does.
+    pub falls: bool,
+    /// Counts from the edge after which the same position may give the next pulse.
+    pub hysteresis: u16,
+    /// Width of a pulse in clocks, 1 to 2^24 − 1.
+    pub pulse_clocks: u32,
 }
 
 /// The error table of an axis.
@@ -226,6 +261,13 @@ impl StageConfig {
             .any(|axis| axis.scale.is_some_and(|scale| scale.closes_loop));
         let controls = self.axes.iter().any(|axis| axis.closed_loop().is_some());
         StageSchedule::of(&passes, controls, scaled)
+    }
+
+    /// Bit of the interrupt of an axis's position compare in the interrupt registers. A stage of four axes has none left.
+    pub fn compare_interrupt_bit(&self, axis: usize) -> Option<u32> {
+        let first = (MOST_AXES - 1) * AXIS_INTERRUPTS.len();
+        let has_compare = self.axes.get(axis).is_some_and(|axis| axis.compare.is_some());
+        (has_compare && self.axes.len() < MOST_AXES).then_some((first + axis) as u32)
     }
 
     pub(super) fn schedule(&self) -> Result<ScheduleConfig, StageError> {

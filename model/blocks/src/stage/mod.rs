@@ -23,6 +23,8 @@ mod axis;
 mod axis_settings;
 mod axis_words;
 mod bring_up;
+mod capture;
+mod compare;
 mod config;
 mod error_table;
 mod registers;
@@ -31,7 +33,8 @@ mod steps;
 mod supervision;
 
 pub use self::config::{
-    Follower, StageAxis, StageConfig, StageError, StageErrorTable, StageLoop, StageProbe, StageScale,
+    Follower, StageAxis, StageCapture, StageCompare, StageConfig, StageError, StageErrorTable, StageLoop, StageProbe,
+    StageScale,
 };
 pub use self::registers::{AXIS_INTERRUPTS, axis_interrupt_bit, axis_window};
 pub(crate) use self::registers::{axis_register, driven_and_read};
@@ -47,7 +50,12 @@ use super::registers::RegisterMap;
 fn shared_pins(config: &StageConfig) -> Vec<&'static str> {
     let with_pwm = config.axes.iter().any(|axis| axis.closed_loop().is_some());
     let pll_locked = with_pwm.then_some(PLL_LOCKED);
-    ["emergency_stop_n"].into_iter().chain(pll_locked).collect()
+    let capture = config.capture.map(|_| capture::PIN);
+    ["emergency_stop_n"]
+        .into_iter()
+        .chain(pll_locked)
+        .chain(capture)
+        .collect()
 }
 
 /// Name of the component.
@@ -68,11 +76,10 @@ impl Component {
             ComponentPart::Divider(config.tick),
             ComponentPart::Group(config.axes.len()),
         ];
+        blocks.extend(config.capture.map(|_| ComponentPart::Capture));
         for axis in &config.axes {
-            blocks.push(ComponentPart::Joined(Box::new(axis::join(
-                axis,
-                config.tick.tick_clocks(),
-            )?)));
+            let joined = axis::join(axis, config.tick.tick_clocks(), config.axes.len())?;
+            blocks.push(ComponentPart::Joined(Box::new(joined)));
         }
         let blocks = blocks.into_iter().map(|block| (block.name().to_owned(), block));
         let wiring = Wiring {
@@ -126,6 +133,7 @@ fn wire(config: &StageConfig, block: &ComponentPart, part: Part) -> Part {
                 part.on(&format!("{port}_{index}"), &format!("{}_{port}", axis.name))
             })
         }),
+        ComponentPart::Capture => capture::wire(config, part),
         ComponentPart::Joined(joined) => {
             let ports = part.ports().to_vec();
             let own = ports.iter().filter(|port| !SHARED.contains(&port.name.as_str()));

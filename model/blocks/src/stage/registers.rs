@@ -1,7 +1,7 @@
 //! The register map of a stage: a window of its own, and one per axis, all alike.
 
 use super::config::{Follower, StageAxis, StageConfig};
-use super::{axis_settings, axis_words, bring_up, error_table, steps};
+use super::{axis_settings, axis_words, bring_up, capture, compare, error_table, steps};
 use crate::group::MOST_AXES;
 use crate::registers::maps;
 use crate::registers::{Access, Description, Field, FlagSource, Register, WINDOW_WORDS};
@@ -100,6 +100,9 @@ pub(super) fn stage(config: &StageConfig) -> Description {
             feed_holds(config),
         )
         .with_times(0x20, 0x40);
+    if let Some(of) = &config.capture {
+        description = capture::described(description, of, config);
+    }
     for ((window, axis), registers) in (1..).zip(&config.axes).zip(windows) {
         let placed = registers
             .into_iter()
@@ -166,6 +169,16 @@ fn interrupts(config: &StageConfig) -> Vec<Field> {
             fields.push(Field::flag(&format!("{}_{name}", axis.name), bit, meaning));
         }
     }
+    for (index, axis) in config.axes.iter().enumerate() {
+        if let Some(bit) = config.compare_interrupt_bit(index) {
+            let (name, meaning) = compare::INTERRUPT;
+            fields.push(Field::flag(&format!("{}_{name}", axis.name), bit, meaning));
+        }
+    }
+    if config.capture.is_some() {
+        let (name, bit, meaning) = capture::INTERRUPT;
+        fields.push(Field::flag(name, bit, meaning));
+    }
     fields.push(Field::flag("tick", 28, "a tick has passed"));
     fields.push(Field::flag(
         "start_refused",
@@ -217,6 +230,9 @@ pub fn axis_window(axis: &StageAxis) -> Vec<Register> {
     }
     if axis.bring_up.is_some() {
         registers.extend(bring_up::registers());
+    }
+    if let Some(of) = &axis.compare {
+        registers.extend(compare::registers(of));
     }
     match &axis.follower {
         Follower::Loop(_) => registers,

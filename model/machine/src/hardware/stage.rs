@@ -5,7 +5,10 @@ use super::error_table;
 use crate::control::{
     ControlError, Derived, SupervisionError, TableBounds, gains, loop_lag_s, schedule_delay_s, supervision,
 };
-use crate::machine_file::{AxisSection, ClockSection, Encoder, Machine, PwmMode, PwmSection, ScaleUse};
+use crate::machine_file::{
+    AxisSection, CaptureEdge, ClockSection, CompareDirection, CompareSection, Encoder, Machine, PwmMode, PwmSection,
+    ScaleUse,
+};
 use crate::plan::{MachineDesign, TableFamily};
 use posicast_blocks::divider::{DividerConfig, DividerConfigError};
 use posicast_blocks::error_table::ErrorTableConfigError;
@@ -16,7 +19,8 @@ use posicast_blocks::shaper::{ShaperConfig, ShaperConfigError, ShaperMotion};
 use posicast_blocks::sliding_mode::{Law, Settings};
 use posicast_blocks::stage::Supervision;
 use posicast_blocks::stage::{
-    Follower, StageAxis, StageConfig, StageErrorTable, StageLoop, StageProbe, StageScale, StageSchedule,
+    Follower, StageAxis, StageCapture, StageCompare, StageConfig, StageErrorTable, StageLoop, StageProbe, StageScale,
+    StageSchedule,
 };
 use posicast_blocks::step_generator::{StepGeneratorConfig, StepGeneratorConfigError};
 use posicast_blocks::trace::{TraceConfig, TraceConfigError};
@@ -202,6 +206,11 @@ pub fn stage(machine: &Machine, design: &MachineDesign) -> Result<Option<Machine
         config: StageConfig {
             tick,
             axes: built,
+            capture: machine.capture.map(|capture| StageCapture {
+                filter_clocks: capture.filter_clocks(&machine.clock),
+                rises: capture.edge != CaptureEdge::Falling,
+                falls: capture.edge != CaptureEdge::Rising,
+            }),
             machine_crc: machine.link.map(|link| link.machine_crc),
         },
         loops,
@@ -281,6 +290,20 @@ fn scale(axis: &AxisSection) -> Result<Option<StageScale>, ScaleRatioError> {
     }))
 }
 
+/// The hardware of `[axis.compare]`. The machine file's check makes sure that its positions are counts.
+fn stage_compare(axis: &AxisSection, compare: &CompareSection, clock: &ClockSection) -> StageCompare {
+    let counts = |length: f64| (length * axis.counts_per_unit).round();
+    StageCompare {
+        first: counts(compare.first) as i32,
+        spacing: counts(compare.spacing).max(1.0) as u32,
+        positions: compare.positions,
+        rises: compare.direction != CompareDirection::Down,
+        falls: compare.direction != CompareDirection::Up,
+        hysteresis: compare.hysteresis_counts(axis.counts_per_unit),
+        pulse_clocks: compare.pulse_clocks(clock),
+    }
+}
+
 /// The memory of `[axis.trace]`.
 pub(super) fn trace(axis: &AxisSection) -> Result<Option<TraceConfig>, TraceConfigError> {
     let samples = axis.trace.map(|trace| u64::from(trace.samples));
@@ -312,6 +335,10 @@ impl Parts<'_> {
                 filter_clocks: probe.filter_clocks(clock),
             }),
             corrects: self.axis.correction.is_some(),
+            compare: self
+                .axis
+                .compare
+                .map(|compare| stage_compare(self.axis, &compare, clock)),
             scale: self.scale,
             error_table: self.error_table,
             bring_up: self.bring_up,

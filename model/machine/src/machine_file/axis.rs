@@ -4,8 +4,8 @@ use super::key::{Default, Key, Values};
 use super::range::COUNTS_PER_UNIT;
 use super::table::Table;
 use super::{
-    AxisSection, ClockSection, FixedPoint, ScaleUse, controller, correction, drive, encoder, error_table, input,
-    limits, mechanics, mode, moving, probe, pwm, scale, shaper, stepper, steps, trace,
+    AxisSection, ClockSection, FixedPoint, ScaleUse, compare, controller, correction, drive, encoder, error_table,
+    input, limits, mechanics, mode, moving, probe, pwm, scale, shaper, stepper, steps, trace,
 };
 use crate::unit::AxisUnit;
 use posicast_blocks::shaper::MOTION_WORD_BITS;
@@ -78,6 +78,11 @@ pub(super) const KEYS: &[Key] = &[
         "Touch switch at which the axis is homed.",
     ),
     Key::new(
+        "compare",
+        Values::Table(compare::KEYS),
+        "Line that pulses where the axis passes positions.",
+    ),
+    Key::new(
         "correction",
         Values::Table(correction::KEYS),
         "Missing steps that a host gives while the axis rests.",
@@ -144,6 +149,7 @@ pub(super) fn read(
     let steps = table.table("steps").map(|t| (steps::read(&t, clock), t));
     let stepper = table.table("stepper").map(|t| stepper::read(&t, unit));
     let probe = table.table("probe").map(|t| (probe::read(&t, unit, clock), t));
+    let compare = table.table("compare").map(|t| (compare::read(&t, unit), t));
     let correction = table.table("correction").map(|t| (correction::read(&t, unit), t));
     let input = table.table("input").map(|t| (input::read(&t, clock), t));
     let scale = table.table("scale").map(|t| scale::read(table, &t, unit));
@@ -180,6 +186,15 @@ pub(super) fn read(
     if let Some((Some(probe), table)) = &probe {
         probe::check(table, probe, limits.as_ref(), unit);
     }
+    if let Some((Some(compare), table)) = &compare {
+        let of_axis = compare::OfAxis {
+            unit,
+            counts_per_unit,
+            limits: limits.as_ref(),
+            clock,
+        };
+        compare::check(table, compare, &of_axis);
+    }
     if let Some((Some(correction), table)) = &correction {
         correction::check(table, correction, limits.as_ref(), (unit, counts_per_unit));
     }
@@ -212,6 +227,7 @@ pub(super) fn read(
         probe: not_refused(probe.map(|(probe, _)| probe))?,
         limits,
         scale: not_refused(scale)?,
+        compare: not_refused(compare.map(|(compare, _)| compare))?,
         correction: not_refused(correction.map(|(correction, _)| correction))?,
         error_table: not_refused(error_table)?,
         trace: not_refused(trace)?,
@@ -267,7 +283,7 @@ pub(super) struct Need {
 }
 
 /// Blocks of an axis that need other blocks.
-pub(super) const NEEDS: [Need; 10] = [
+pub(super) const NEEDS: [Need; 11] = [
     Need {
         block: "scale",
         others: &["encoder"],
@@ -305,6 +321,12 @@ pub(super) const NEEDS: [Need; 10] = [
         allowed: "a probe with [axis.steps]; an axis with an encoder is homed by its index",
     },
     Need {
+        block: "compare",
+        others: &["controller"],
+        or: Some("steps"),
+        allowed: "a compare with [axis.controller] or [axis.steps], whose count it compares",
+    },
+    Need {
         block: "correction",
         others: &["steps", "scale"],
         or: None,
@@ -331,7 +353,7 @@ pub(super) const NEEDS: [Need; 10] = [
 ];
 
 /// The tables that an inline shaper has no block for.
-const NOT_WITH_INPUT: [&str; 5] = ["correction", "probe", "scale", "error_table", "family"];
+const NOT_WITH_INPUT: [&str; 6] = ["compare", "correction", "probe", "scale", "error_table", "family"];
 
 /// The blocks that `[axis.steps]` replaces.
 pub(super) const REPLACED_BY_STEPS: [&str; 4] = ["encoder", "pwm", "drive", "controller"];

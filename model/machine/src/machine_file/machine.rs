@@ -7,7 +7,10 @@ use super::hint::{self, KILO, MEGA_OR_KILO};
 use super::key::{Default, Key, Values};
 use super::range::{NumberRange, RATIO_ROUNDING};
 use super::table::Table;
-use super::{AxisSection, ClockSection, FixedPoint, LinkSection, Machine, StageSection, Target, axis, link, stage};
+use super::{
+    AxisSection, CaptureSection, ClockSection, FixedPoint, LinkSection, Machine, StageSection, Target, axis, capture,
+    link, stage,
+};
 use crate::spelling::same_letters;
 use posicast_blocks::bus_component::BridgedBus;
 use posicast_blocks::shaper::WORD_BITS;
@@ -51,6 +54,12 @@ pub(super) const KEYS: &[Key] = &[
         Values::Table(stage::KEYS),
         "Settings of all axes; even empty, it makes their delays equal.",
     ),
+    Key::new(
+        "capture",
+        Values::Table(capture::KEYS),
+        "Line whose edges take the positions of all axes, such as that of a touch probe.",
+    )
+    .rule("needs encoder, PWM, drive and controller, or steps, on every axis"),
     Key::new("link", Values::Table(link::KEYS), "Serial line or SPI to a host.")
         .rule("needs encoder, PWM, drive and controller on every axis, or `[axis.input]`"),
 ];
@@ -154,6 +163,7 @@ pub(super) fn read(root: &Table<'_, '_>) -> Option<Machine> {
     });
     check_inputs(root, axes.as_deref().unwrap_or_default());
     check_cascades(root, axes.as_deref().unwrap_or_default());
+    let capture = read_capture(root, clock, axes.as_deref());
     let link = read_link(root, clock, axes.as_deref());
     // The delays of an inline shaper's axes are always made equal.
     let has_inputs = axes.iter().flatten().any(|axis| axis.input.is_some());
@@ -165,6 +175,7 @@ pub(super) fn read(root: &Table<'_, '_>) -> Option<Machine> {
         target,
         axes: axes?,
         stage,
+        capture,
         link,
     })
 }
@@ -211,14 +222,48 @@ fn check_cascades(root: &Table<'_, '_>, axes: &[AxisSection]) {
     }
 }
 
+/// The first axis that keeps the machine from having a stage.
+fn without_a_loop(axes: &[AxisSection]) -> Option<&AxisSection> {
+    axes.iter().find(|axis| {
+        let whole = axis.encoder.is_some() && axis.pwm.is_some() && axis.drive.is_some() && axis.controller.is_some();
+        !whole && axis.steps.is_none()
+    })
+}
+
+fn read_capture(
+    root: &Table<'_, '_>,
+    clock: Option<ClockSection>,
+    axes: Option<&[AxisSection]>,
+) -> Option<CaptureSection> {
+    let capture = root.table("capture").map(|table| capture::read(&table, clock))?;
+    // Where the axes have a problem, it is the one to mend first.
+    let axes = axes.unwrap_or_default();
+    let allowed = "[capture] where every axis has encoder, pwm, drive and controller, or steps, and no input: these have the counts \
+                   that are captured";
+    if let Some(axis) = without_a_loop(axes) {
+        let found = format!("[capture] beside axis {}, which lacks a part of its loop", axis.name);
+        root.contradiction(
+            "capture",
+            found,
+            allowed,
+            "remove [capture], or add what the axis lacks",
+        );
+    } else if let Some(axis) = axes.iter().find(|axis| axis.input.is_some()) {
+        let found = format!("[capture] beside axis {}, which has an input", axis.name);
+        root.contradiction(
+            "capture",
+            found,
+            allowed,
+            "remove [capture]: the controller of the machine captures",
+        );
+    }
+    Some(capture)
+}
+
 fn read_link(root: &Table<'_, '_>, clock: Option<ClockSection>, axes: Option<&[AxisSection]>) -> Option<LinkSection> {
     let link = root.table("link").and_then(|table| link::read(&table, clock));
     // Where the axes have a problem, it is the one to mend first.
-    let lacks = |axis: &&AxisSection| {
-        let whole = axis.encoder.is_some() && axis.pwm.is_some() && axis.drive.is_some() && axis.controller.is_some();
-        !whole && axis.steps.is_none()
-    };
-    if let Some(axis) = axes?.iter().find(lacks).filter(|axis| axis.input.is_none())
+    if let Some(axis) = without_a_loop(axes?).filter(|axis| axis.input.is_none())
         && link.is_some()
     {
         root.contradiction(

@@ -28,6 +28,8 @@
 //! [`posicast_shaper::digitise`] and [`posicast_blocks::shaper`] check whether tables and delays fit the hardware's sizes.
 
 mod axis;
+mod capture;
+mod compare;
 mod controller;
 mod correction;
 mod drive;
@@ -60,6 +62,8 @@ mod steps;
 mod table;
 mod trace;
 
+pub use capture::{CaptureEdge, CaptureSection};
+pub use compare::{CompareDirection, CompareSection};
 pub use controller::Controller;
 pub use correction::CorrectionSection;
 pub use drive::{Drive, DriveMode};
@@ -180,6 +184,8 @@ pub struct Machine {
     pub axes: Vec<AxisSection>,
     /// `[stage]`: settings of all axes together.
     pub stage: Option<StageSection>,
+    /// `[capture]`: the line whose edges take the positions of all axes; only with a stage.
+    pub capture: Option<CaptureSection>,
     /// `[link]`: the line, serial or SPI, to the registers of the stage or the inline shaper.
     pub link: Option<LinkSection>,
 }
@@ -273,6 +279,8 @@ pub struct AxisSection {
     pub limits: Option<LimitsSection>,
     /// `[axis.scale]`; only with an encoder or steps.
     pub scale: Option<Scale>,
+    /// `[axis.compare]`; only with a controller or steps, and without an input.
+    pub compare: Option<CompareSection>,
     /// `[axis.correction]`; only with steps and a scale.
     pub correction: Option<CorrectionSection>,
     /// `[axis.error_table]`; only with a controller or steps.

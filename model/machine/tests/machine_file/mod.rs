@@ -1,6 +1,8 @@
 //! Tests of the machine file from its users' point of view.
 
 mod blocks;
+mod capture;
+mod compare;
 mod error_table;
 mod errors;
 mod files;

@@ -117,7 +117,7 @@ fn each_table_of_the_reader_allows_the_keys_of_the_schema() {
         };
         table["properties"].is_object().then_some((path, table))
     }));
-    assert_eq!(tables.len(), 24);
+    assert_eq!(tables.len(), 26);
     for (path, table) in tables {
         let unknown: Vec<String> = path.iter().cloned().chain(["no_such_key".to_owned()]).collect();
         let file = everything_with(&unknown, toml::Value::Boolean(true));

@@ -10,7 +10,7 @@ use posicast_machine::plan::design_machine;
 use posicast_machine::unit::AxisUnit;
 
 /// Keys in the axis's unit, and the power of it: 1 for a figure per unit, −1 for counts per unit.
-const KEYS: [(&str, i32); 13] = [
+const KEYS: [(&str, i32); 16] = [
     ("counts_per_unit", -1),
     ("full_scale_velocity", 1),
     ("epsilon", 1),
@@ -23,6 +23,9 @@ const KEYS: [(&str, i32); 13] = [
     ("following_error", 1),
     ("deviation", 1),
     ("excitation", 1),
+    ("spacing", 1),
+    ("first", 1),
+    ("hysteresis", 1),
     ("unit", 0),
 ];
 
