@@ -169,8 +169,8 @@ mod tests {
         for (built, pages) in [
             (BuiltBlocks::Shapers, 1),
             (BuiltBlocks::Components, 6),
-            (BuiltBlocks::Stage, 16),
-            (BuiltBlocks::LinkedStage, 17),
+            (BuiltBlocks::Stage, 18),
+            (BuiltBlocks::LinkedStage, 19),
             (BuiltBlocks::Inline, 5),
         ] {
             let files = files(built, None, false);

@@ -34,9 +34,10 @@ impl ClosedLoop<'_> {
 
     /// The simulated machine has no probe; there is no check without a capture.
     fn captured(&self) -> Option<Check> {
-        let reason = "the simulated machine touches nothing; `posicast verify` plays edges at the block";
         self.machine.capture?;
-        Some(Check::not_exercised("the capture line takes positions", true, reason))
+        let name = "the capture line takes positions";
+        let reason = "the simulated machine touches nothing; `posicast verify` plays edges at the block";
+        Some(Check::not_exercised(name, true, reason))
     }
 
     /// No motor may lose a step; there is no check if no axis has steps.

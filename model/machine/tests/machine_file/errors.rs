@@ -41,8 +41,7 @@ fn an_unknown_key_lists_the_allowed_ones_and_suggests_the_nearest() {
         error.problems()[0].remedy,
         "did you mean `damping`? Else remove the key"
     );
-    let expected =
-        "m.toml:5: wibble: found the unknown key wibble; allowed: name, clock, fixed_point, target, axis, stage, link";
+    let expected = "m.toml:5: wibble: found the unknown key wibble; allowed: name, clock, fixed_point, target, axis, stage, capture, link";
     breaks("[fixed_point]\ncommand_bits = 32", "[wibble]", expected);
 }
 
