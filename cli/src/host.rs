@@ -29,7 +29,7 @@ Examples:
   posicast host /dev/ttyUSB0 status --machine xy_stage/machine.toml
   posicast host /dev/ttyUSB0 move x=0.04,y=-0.02 --machine xy_stage/machine.toml
   posicast host /dev/ttyUSB0 home z --machine printer/machine.toml
-  posicast host /dev/ttyUSB0 probe z -5 --speed 2 --machine measuring_arm/machine.toml
+  posicast host /dev/ttyUSB0 probe z -5 --speed 2 --machine mill/machine.toml
   posicast host /dev/ttyUSB0 compare scan on --machine line_scan/machine.toml
   posicast host /dev/ttyUSB0 trace x -o x.csv --shake 60 --machine xy_stage/machine.toml
   posicast host /dev/ttyUSB0 load x new.toml --machine xy_stage/machine.toml

@@ -4,23 +4,25 @@
 //! cargo run --release --example fault_campaign -- --cases 10000 --seed 1 --rtl 44
 //! ```
 //!
-//! `--machine steps` takes the machine with step inputs in place of that with loops. `--rtl N` runs N more cases with the Verilated stage beside the model, compared in every clock. `--first N` begins
-//! with this case, to repeat one that failed. Exit status 1 if a case did not meet its expectation.
+//! `--machine steps` takes the machine with step inputs in place of that with loops, `--machine absolute` that with absolute encoders.
+//! `--rtl N` runs N more cases with the Verilated stage beside the model, compared in every clock. `--first N` begins with this case, to repeat one that failed. Exit status 1 if a case did not meet its expectation.
 
 use std::io::Write;
 use std::process::ExitCode;
 use std::{env, io, thread};
 
-use posicast_closed_loop::fault_campaign::{Bed, FaultReport, run, run_with_rtl};
+use posicast_closed_loop::fault_campaign::{Bed, CampaignError, FaultReport, run, run_with_rtl};
 use posicast_testbench::Error;
 use posicast_testbench::blocks::Sources;
 use posicast_testbench::component::ComponentBlock;
 use posicast_testbench::lockstep::Device;
 
-const USAGE: &str = "fault_campaign [--machine loops|steps] [--cases N] [--first N] [--seed S] [--rtl N] [--threads N]";
+const USAGE: &str =
+    "fault_campaign [--machine loops|steps|absolute] [--cases N] [--first N] [--seed S] [--rtl N] [--threads N]";
 
 struct Options {
-    steps: bool,
+    /// Makes the machine.
+    bed: fn() -> Result<Bed, CampaignError>,
     cases: u64,
     first: u64,
     seed: u64,
@@ -31,7 +33,7 @@ struct Options {
 impl Options {
     fn parse(mut arguments: impl Iterator<Item = String>) -> Result<Self, String> {
         let mut options = Self {
-            steps: false,
+            bed: Bed::new,
             cases: 10_000,
             first: 0,
             seed: 1,
@@ -41,10 +43,11 @@ impl Options {
         while let Some(name) = arguments.next() {
             let value = arguments.next();
             if name == "--machine" {
-                options.steps = match value.as_deref() {
-                    Some("loops") => false,
-                    Some("steps") => true,
-                    _ => return Err(format!("--machine needs `loops` or `steps`\n{USAGE}")),
+                options.bed = match value.as_deref() {
+                    Some("loops") => Bed::new,
+                    Some("steps") => Bed::with_steps,
+                    Some("absolute") => Bed::with_absolute_encoders,
+                    _ => return Err(format!("--machine needs `loops`, `steps` or `absolute`\n{USAGE}")),
                 };
                 continue;
             }
@@ -64,7 +67,7 @@ impl Options {
 }
 
 fn campaigns(options: &Options) -> Result<Vec<FaultReport>, Box<dyn std::error::Error>> {
-    let bed = if options.steps { Bed::with_steps()? } else { Bed::new()? };
+    let bed = (options.bed)()?;
     let numbers = options.first..options.first.saturating_add(options.cases);
     let mut reports = vec![run(&bed, numbers, options.seed, options.threads)?];
     if options.rtl > 0 {

@@ -12,7 +12,7 @@
 //! exactly the same result. The plants follow the model.
 //!
 //! Faults: [`StageBench::set`] drives lines; [`StageBench::force_encoder`] and [`StageBench::break_wire`] cut or
-//! corrupt an encoder, [`StageBench::force_scale`] a scale; [`StageBench::jam`] holds an axis,
+//! corrupt an encoder, [`StageBench::fault_absolute_encoder`] an absolute one, [`StageBench::force_scale`] a scale; [`StageBench::jam`] holds an axis,
 //! [`StageBench::displace`] disturbs it. Forbidden states of the pins are checked in every clock:
 //! [`StageBench::watched`].
 
@@ -28,7 +28,7 @@ use posicast_blocks::composition::Composed;
 use posicast_blocks::segments::Entry;
 use posicast_blocks::stage::StageConfig;
 use posicast_blocks::{Direction, Port, StepError};
-use posicast_machine::plant::axis::{AxisPlant, DrivePins, EncoderPins};
+use posicast_machine::plant::axis::{AbsoluteFault, AxisPlant, DrivePins, EncoderPins};
 
 use posicast_testbench::Error;
 use posicast_testbench::lockstep::report::Mismatch;
@@ -88,6 +88,8 @@ pub struct AxisSample {
 struct Places {
     /// Lines A, B and index of the encoder, or a probe, as far as the axis has them.
     encoder: [Option<usize>; 3],
+    /// Data of an absolute encoder, and the net of its clock.
+    absolute: Option<[usize; 2]>,
     /// Lines A and B of the scale.
     scale: Option<[usize; 2]>,
     /// Pins in the order of [`DrivePins`], as far as the axis has them.
@@ -269,6 +271,9 @@ impl StageBench {
             let [n0, n1, n2] = RECORDED.map(net);
             places.push(Places {
                 encoder: [input("a"), input("b"), input("z").or(input("probe"))],
+                absolute: input("encoder_data")
+                    .zip(net("encoder_clock").ok())
+                    .map(<[usize; 2]>::from),
                 scale: scale[0].zip(scale[1]).map(<[usize; 2]>::from),
                 drive: pins,
                 recorded: [n0?, n1?, n2?],
@@ -346,6 +351,11 @@ impl StageBench {
     /// Breaks a wire of an axis's encoder from the next clock on; `None` repairs it.
     pub fn break_wire(&mut self, axis: usize, wire: Option<Wire>) {
         self.faults[axis].wire = wire;
+    }
+
+    /// Gives the absolute encoder of an axis a fault from the next clock on; `None` mends it.
+    pub fn fault_absolute_encoder(&mut self, axis: usize, fault: Option<AbsoluteFault>) {
+        self.plants[axis].set_absolute_fault(fault);
     }
 
     /// Forces the lines A and B of an axis's scale, as [`force_encoder`](Self::force_encoder) does for the encoder.
@@ -462,7 +472,7 @@ impl StageBench {
     pub fn clocks(&mut self, clocks: u64) -> Result<(), Error> {
         let end = self.now + clocks;
         while self.now < end {
-            let axes = self.plants.iter().zip(&self.places).zip(&self.faults);
+            let axes = self.plants.iter_mut().zip(&self.places).zip(&self.faults);
             for (((plant, places), fault), watched) in axes.zip(&mut self.watched) {
                 watched.look(self.model.value(places.recorded[2]), plant);
                 let lines = fault.wire.map_or(plant.encoder(), |wire| wire.apply(plant.encoder()));
@@ -471,6 +481,10 @@ impl StageBench {
                     if let Some(place) = place {
                         self.inputs[place] = level.into();
                     }
+                }
+                if let Some([data, clock]) = places.absolute {
+                    plant.encoder_clock(self.model.value(clock) != 0);
+                    self.inputs[data] = plant.encoder_data().into();
                 }
                 if let Some([a, b]) = places.scale {
                     let pins = fault.scale.unwrap_or_else(|| plant.scale());

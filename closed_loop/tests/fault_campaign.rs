@@ -72,6 +72,14 @@ fn every_fault_of_an_axis_with_steps_is_handled_as_stated() {
 }
 
 #[test]
+fn every_fault_of_an_axis_with_an_absolute_encoder_is_handled_as_stated() {
+    let bed = Bed::with_absolute_encoders().unwrap();
+    let report = run(&bed, 0..ROUNDS * bed.rows.len() as u64, SEED, threads()).unwrap();
+    assert_eq!(report.failures(), [""; 0], "{report}");
+    assert!(report.kinds().len() == 31 && report.kinds().iter().all(|kind| kind.cases == ROUNDS));
+}
+
+#[test]
 fn lockstep_faults_with_the_rtl_beside_the_model() {
     let bed = Bed::new().unwrap();
     let block = ComponentBlock::new(bed.component.clone(), "xy_stage", "xy");

@@ -1,6 +1,7 @@
 //! The tests of `posicast-closed-loop` in one program, because linking takes most of the time of a small test program.
 #![cfg(test)]
 
+mod absolute;
 mod error_table_loop;
 mod fault_campaign;
 mod inline;

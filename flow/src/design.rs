@@ -157,6 +157,7 @@ impl<'a> DesignReport<'a> {
     pub(crate) fn warn(&self, observer: &dyn Observer) {
         let mut warnings = beyond_tolerance(self.machine, &self.design);
         warnings.extend(guards::missing(self.machine));
+        warnings.extend(guards::long_cables(self.machine));
         warnings.extend(self.families().filter_map(|family| family.warning()));
         warnings.extend(error_table::not_built(self.machine, &self.hardware));
         let controllers = self.controllers.iter().enumerate();

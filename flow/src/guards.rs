@@ -1,12 +1,21 @@
-//! Warns about guards that an axis lacks because the machine file does not request them, and about the consequences.
+//! Warns about guards that an axis lacks because the machine file does not request them, and about the consequences; and about
+//! cables that are too long for the clock of an encoder.
 
 use crate::warning::Warning;
+use posicast_blocks::absolute_encoder::AbsoluteProtocol;
 use posicast_machine::control::{LostSign, lost_sign};
-use posicast_machine::machine_file::{AxisSection, LimitsSection, Machine};
+use posicast_machine::machine_file::{AxisSection, ClockSection, LimitsSection, Machine};
 use posicast_shaper::unit::trimmed;
 
 /// A following error of fewer counts than this is most likely meant in another unit.
 const LEAST_COUNTS: f64 = 4.0;
+
+/// Largest product of a line's bit rate and its length, bit·m/s: the guideline of TIA-422-B, 10 Mbit/s over 12 m. A clock of f Hz has
+/// 2 f bits per s.
+const BITS_BY_METRES: f64 = 120e6;
+/// Delay of a line there and back, s per m, and that of drivers and encoder, s.
+const DELAY_S_PER_M: f64 = 10e-9;
+const DRIVERS_S: f64 = 300e-9;
 
 /// A guard, whether a file has it, and the possible consequences without it.
 struct Guard {
@@ -58,6 +67,42 @@ pub(crate) fn missing(machine: &Machine) -> Vec<Warning> {
         texts.chain(sign).chain(tight).collect::<Vec<_>>()
     };
     loops.flat_map(of_axis).collect()
+}
+
+/// A warning for every cable of an absolute encoder that is too long for its clock.
+pub(crate) fn long_cables(machine: &Machine) -> Vec<Warning> {
+    let axes = machine.axes.iter().enumerate();
+    axes.filter_map(|(index, axis)| {
+        let text = long_cable(axis, &machine.clock)?;
+        Some(Warning::new(index, "axis.encoder.cable_m", text))
+    })
+    .collect()
+}
+
+fn long_cable(axis: &AxisSection, clock: &ClockSection) -> Option<String> {
+    let absolute = axis.encoder.as_ref()?.absolute?;
+    let cable_m = absolute.cable_m?;
+    let line_hz = absolute.times.line_hz;
+    let of_bandwidth = BITS_BY_METRES / (2.0 * line_hz);
+    // A bit of SSI is taken three clocks before the next edge, whatever the line delays.
+    let of_delay = match absolute.protocol {
+        AbsoluteProtocol::Ssi => (1.0 / line_hz - 3.0 / clock.frequency_hz - DRIVERS_S) / DELAY_S_PER_M,
+        AbsoluteProtocol::BissC => f64::INFINITY,
+    };
+    let (most_m, why) = if of_delay < of_bandwidth {
+        (of_delay.max(0.0), "SSI does not compensate the delay of the line")
+    } else {
+        (of_bandwidth, "the guideline of RS-422, 10 Mbit/s over 12 m")
+    };
+    (cable_m > most_m).then(|| {
+        format!(
+            "axis `{}` reads its encoder at {} kHz over {} m of cable: at most {} m are advisable at that clock ({why}); lower clock_hz",
+            axis.name,
+            trimmed(line_hz / 1e3, 1),
+            trimmed(cable_m, 1),
+            trimmed(most_m, 1)
+        )
+    })
 }
 
 /// A warning if the encoder's own steps exceed the following error, which is too small.

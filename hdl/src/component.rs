@@ -5,9 +5,10 @@
 
 use crate::emit::{EmitError, Header, Module, add, connect};
 use crate::{
-    axis, capture, compare, divider, divider_share, drive_command, encoder_generator, error_table, excitation, group,
-    inline_axis, inline_group, lasting_deviation, linear_scale, probe_line, pulse_counter, pwm, realign, registers,
-    sample_select, schedule, segments, setting_banks, shaper, sliding_mode, step_generator, time_base, trace,
+    absolute_encoder, absolute_feedback, axis, capture, compare, divider, divider_share, drive_command,
+    encoder_generator, error_table, excitation, group, inline_axis, inline_group, lasting_deviation, linear_scale,
+    probe_line, pulse_counter, pwm, realign, registers, sample_select, schedule, segments, setting_banks, shaper,
+    sliding_mode, step_generator, time_base, trace,
 };
 use posicast_blocks::component::{Component, ComponentPart, JoinedBlocks};
 use posicast_blocks::inline_shaper::INLINE_SHAPER;
@@ -74,6 +75,8 @@ fn block(block: &ComponentPart, top: &str, prefix: &str, of: Of) -> Result<Vec<M
         ComponentPart::SlidingMode => sliding_mode::emit(prefix),
         ComponentPart::SettingBanks(machine) => setting_banks::emit(machine, prefix),
         ComponentPart::PulseCounter => pulse_counter::emit(prefix),
+        ComponentPart::AbsoluteEncoder(config) => absolute_encoder::emit(config, prefix),
+        ComponentPart::AbsoluteFeedback => absolute_feedback::emit(prefix),
         ComponentPart::Divider(config) => divider::emit(config, prefix),
         ComponentPart::TimeBase(config) => time_base::emit(config, prefix),
         ComponentPart::Segments => segments::emit(prefix),

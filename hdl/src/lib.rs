@@ -14,6 +14,7 @@
 //! | [`divider`] | the divider: counts and clocks to velocity, one bit per clock |
 //! | [`pulse_counter`] | the pulse counter: encoder signals to position, index and velocity |
 //! | [`absolute_encoder`] | the absolute encoder: readings of SSI and BiSS-C to a position |
+//! | [`absolute_feedback`] | what an axis takes from it: count and velocity |
 //! | [`pwm`] | the PWM: a duty to the gates of a bridge, with dead time and fault path |
 //! | [`sliding_mode`] | the controller: sliding mode, PD, PID |
 //! | [`registers`] | register banks, from their description |
@@ -45,6 +46,7 @@
 //! | [`emit`](mod@emit) | the typed emitter: RustHDL's syntax tree as Verilog |
 
 pub mod absolute_encoder;
+pub mod absolute_feedback;
 pub mod axi_lite_bridge;
 pub mod axis;
 pub mod bus_component;

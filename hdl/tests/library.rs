@@ -19,10 +19,10 @@ use posicast_blocks::step_generator::{StepGeneratorConfig, StepLinesActiveLow, S
 use posicast_blocks::trace::TraceConfig;
 use posicast_hdl::emit::{LIBRARY, Module};
 use posicast_hdl::{
-    absolute_encoder, axi_lite_bridge, axis, capture, cascade, compare, component, divider, divider_share,
-    drive_command, encoder_generator, excitation, group, inline_axis, inline_group, lasting_deviation, linear_scale,
-    probe_line, pulse_counter, pwm, realign, registers, sample_select, schedule, segments, setting_banks, shaper,
-    sliding_mode, spi_bridge, step_generator, time_base, trace, uart_bridge, wishbone_bridge,
+    absolute_encoder, absolute_feedback, axi_lite_bridge, axis, capture, cascade, compare, component, divider,
+    divider_share, drive_command, encoder_generator, excitation, group, inline_axis, inline_group, lasting_deviation,
+    linear_scale, probe_line, pulse_counter, pwm, realign, registers, sample_select, schedule, segments, setting_banks,
+    shaper, sliding_mode, spi_bridge, step_generator, time_base, trace, uart_bridge, wishbone_bridge,
 };
 use posicast_taps::{Tap, TapTable};
 use std::collections::BTreeMap;
@@ -205,6 +205,7 @@ fn machine(prefix: &str, chance: &mut Chance) -> Vec<Vec<Module>> {
         encoder_generator::emit(prefix),
         step_generator::emit(&step_generator_config(chance), prefix),
         absolute_encoder::emit(&absolute_encoder_config(chance), prefix),
+        absolute_feedback::emit(prefix),
         capture::emit(prefix),
         excitation::emit(prefix),
         uart_bridge::emit(prefix),

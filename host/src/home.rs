@@ -9,12 +9,10 @@
 
 use std::io::{Read, Write};
 
-use posicast_blocks::axis::SupervisorState;
 use posicast_blocks::segments::POSITION_FRACTION;
 use posicast_machine::machine_file::ProbeSection;
 
 use crate::moves::HostMove;
-use crate::stage::{PATIENCE_TICKS, fault};
 use crate::{HostError, HostedStage};
 
 /// Where a search ends.
@@ -44,7 +42,7 @@ impl<L: Read + Write> HostedStage<'_, L> {
             self.shift(axis, away, probe.velocity)?;
         }
         self.free(axis)?;
-        if !self.seek(axis, probe.side.sign() * probe.within, probe.velocity, Until::Touches)? {
+        if !self.seek_contact(axis, probe.side.sign() * probe.within, probe.velocity, Until::Touches)? {
             return Err(self.no_contact(axis, "there was no contact within `within`"));
         }
         self.shift(axis, away, probe.velocity)?;
@@ -66,7 +64,7 @@ impl<L: Read + Write> HostedStage<'_, L> {
         self.write_one(axis, "preset", position as u32)?;
         self.write_one(axis, "index", once)?;
         self.write_one(axis, "index_arm", 0)?;
-        let found = self.seek(
+        let found = self.seek_contact(
             axis,
             2.0 * probe.side.sign() * probe.retract,
             probe.slow_velocity,
@@ -117,34 +115,18 @@ impl<L: Read + Write> HostedStage<'_, L> {
     }
 
     /// Moves over a distance until something is found, and comes to rest; returns whether it was found.
-    fn seek(&mut self, axis: usize, distance: f64, velocity: f64, until: Until) -> Result<bool, HostError> {
-        let ticks = self.begin(&[self.in_file(axis, distance, velocity)])?;
+    fn seek_contact(&mut self, axis: usize, distance: f64, velocity: f64, until: Until) -> Result<bool, HostError> {
         let [touches, armed] = ["level_z", "index_armed"].map(|name| self.field(axis, "status", name));
         let (touches, armed) = (touches?, armed?);
-        let mut left = self.patience(ticks)?;
-        let found = loop {
-            let word = self.read_one(axis, "status")?;
+        let found = self.seek(self.in_file(axis, distance, velocity), |stage| {
+            let word = stage.read_one(axis, "status")?;
             let is = match until {
                 Until::Touches => touches.of(word) != 0,
                 Until::Latched => armed.of(word) == 0,
             };
-            if is {
-                break true;
-            }
-            let status = &self.status()?[axis];
-            if status.causes != 0 {
-                return Err(fault(status));
-            }
-            if status.state == Some(SupervisorState::Hold) && status.waiting == 0 {
-                break false;
-            }
-            if !self.pass(&mut left)? {
-                break false;
-            }
-        };
-        self.write_one(axis, "stop", 0)?;
-        self.end(&[axis], PATIENCE_TICKS.saturating_add(ticks))?;
-        Ok(found)
+            Ok(is.then_some(()))
+        });
+        Ok(found?.is_some())
     }
 
     /// Shifts the soft limits of the machine file to the origin, and says that the axis is homed.

@@ -66,6 +66,35 @@ impl<L: Read + Write> HostedStage<'_, L> {
             .saturating_add(PATIENCE_TICKS))
     }
 
+    /// Moves an axis until `look` finds something, and stops it; `None` where the move ends before.
+    pub(crate) fn seek<T>(
+        &mut self,
+        way: HostMove,
+        mut look: impl FnMut(&mut Self) -> Result<Option<T>, HostError>,
+    ) -> Result<Option<T>, HostError> {
+        let axis = way.axis;
+        let ticks = self.begin(&[way])?;
+        let mut left = self.patience(ticks)?;
+        let found = loop {
+            // The state is read first: a move that has ended is looked at to its end.
+            let status = self.status()?.swap_remove(axis);
+            let found = look(self)?;
+            if found.is_some() {
+                break found;
+            }
+            if status.causes != 0 {
+                return Err(fault(&status));
+            }
+            let rests = status.state == Some(SupervisorState::Hold) && status.waiting == 0;
+            if rests || !self.pass(&mut left)? {
+                break None;
+            }
+        };
+        self.write_one(axis, "stop", 0)?;
+        self.end(&[axis], PATIENCE_TICKS.saturating_add(ticks))?;
+        Ok(found)
+    }
+
     /// Waits until the commands of these axes, and what their shapers make of them, stand still.
     pub(crate) fn end(&mut self, axes: &[usize], ticks: u32) -> Result<(), HostError> {
         self.wait(axes, ("come to the end of its move", ticks), |status| {

@@ -2,11 +2,9 @@
 
 use std::io::{Read, Write};
 
-use posicast_blocks::axis::SupervisorState;
 use posicast_machine::machine_file::CaptureEdge;
 
 use crate::moves::HostMove;
-use crate::stage::{PATIENCE_TICKS, fault};
 use crate::{HostError, HostedStage};
 
 /// The positions at an edge of the capture line.
@@ -44,11 +42,12 @@ impl<L: Read + Write> HostedStage<'_, L> {
             return Err(self.not_probed(axis, "the machine file has no [capture]"));
         }
         self.begin_capture(axis)?;
-        let found = self.go_to_edge(way);
+        let found = self.seek(way, Self::oldest_capture);
         // A later touch is not one of this move.
         let control = self.register("capture_control")?.reset();
         self.write(&[("capture_control".to_owned(), control)])?;
-        let found = found?;
+        let found =
+            found?.ok_or_else(|| self.not_probed(axis, "the move ended without an edge of the capture line"))?;
         let stands = self.read_one(axis, "position")? as i32;
         let at_edge = found.positions.get(axis).copied().unwrap_or_default();
         Ok(Probing {
@@ -87,29 +86,6 @@ impl<L: Read + Write> HostedStage<'_, L> {
             ("capture_clear".to_owned(), 0),
             ("capture_control".to_owned(), on),
         ])
-    }
-
-    fn go_to_edge(&mut self, way: HostMove) -> Result<CapturedPositions, HostError> {
-        let axis = way.axis;
-        let ticks = self.begin(&[way])?;
-        let mut left = self.patience(ticks)?;
-        let found = loop {
-            // The state is read before the edge: a move that ended has been looked at to its end.
-            let status = self.status()?.swap_remove(axis);
-            if let Some(found) = self.oldest_capture()? {
-                break Some(found);
-            }
-            if status.causes != 0 {
-                return Err(fault(&status));
-            }
-            let rests = status.state == Some(SupervisorState::Hold) && status.waiting == 0;
-            if rests || !self.pass(&mut left)? {
-                break None;
-            }
-        };
-        self.write_one(axis, "stop", 0)?;
-        self.end(&[axis], PATIENCE_TICKS.saturating_add(ticks))?;
-        found.ok_or_else(|| self.not_probed(axis, "the move ended without an edge of the capture line"))
     }
 
     /// The oldest entry of the capture, which stays; `None` if there is none.

@@ -1,24 +1,21 @@
 //! The position compare, on the model of the stage with its simulated machine.
 #![cfg(test)]
 
-use crate::home::LINK;
+use crate::home::{LINK, bench};
 use crate::stage::stage;
 use posicast_blocks::linked_stage::address_limit;
 use posicast_closed_loop::linked_bench::LinkedBench;
-use posicast_closed_loop::stage_bench::StageBench;
 use posicast_host::{HostMove, HostedStage, Link, LinkOptions};
 use posicast_machine::hardware::StageHardware;
 use posicast_machine::machine_file::{self, Machine};
-use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
+use posicast_machine::plant::axis::PlantOptions;
 
 fn machine() -> Machine {
     machine_file::parse("line-scan.toml", include_str!("../../examples/line-scan.toml")).unwrap()
 }
 
 fn open<'m>(machine: &'m Machine, stage: &'m StageHardware) -> HostedStage<'m, LinkedBench> {
-    let plant = |axis| AxisPlant::new(axis, &machine.clock, &PlantOptions::default()).unwrap();
-    let plants = machine.axes.iter().map(plant).collect();
-    let bench = StageBench::new(&stage.of_machine.config, &stage.component, plants, None, 1).unwrap();
+    let bench = bench(machine, stage, &PlantOptions::default());
     let line = LinkedBench::new(bench, &LINK, &machine.clock, address_limit(&stage.component));
     HostedStage::open(Link::new(line, LinkOptions::default()), machine, stage).unwrap()
 }

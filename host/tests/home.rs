@@ -41,15 +41,20 @@ fn machine(probe: &str) -> Machine {
     )
 }
 
+/// The stage with its machine.
+pub(crate) fn bench(machine: &Machine, stage: &StageHardware, options: &PlantOptions) -> StageBench {
+    let plant = |axis| AxisPlant::new(axis, &machine.clock, options).unwrap();
+    let plants = machine.axes.iter().map(plant).collect();
+    StageBench::new(&stage.of_machine.config, &stage.component, plants, None, 1).unwrap()
+}
+
 /// The stage with its machine, whose probe touches from a position on.
 fn open<'m>(machine: &'m Machine, stage: &'m StageHardware, contact_at: f64) -> HostedStage<'m, LinkedBench> {
     let options = PlantOptions {
         contact_at,
         ..PlantOptions::default()
     };
-    let plant = |axis| AxisPlant::new(axis, &machine.clock, &options).unwrap();
-    let plants = machine.axes.iter().map(plant).collect();
-    let bench = StageBench::new(&stage.of_machine.config, &stage.component, plants, None, 1).unwrap();
+    let bench = bench(machine, stage, &options);
     let line = LinkedBench::new(bench, &LINK, &machine.clock, address_limit(&stage.component));
     HostedStage::open(Link::new(line, OPTIONS), machine, stage).unwrap()
 }

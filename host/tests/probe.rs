@@ -1,7 +1,7 @@
 //! Probing at a capture line, on the model of the stage with its simulated machine.
 #![cfg(test)]
 
-use crate::home::LINK;
+use crate::home::{LINK, bench};
 use crate::stage::stage;
 use posicast_blocks::linked_stage::address_limit;
 use posicast_closed_loop::linked_bench::{LinkedBench, Registered};
@@ -9,7 +9,7 @@ use posicast_closed_loop::stage_bench::StageBench;
 use posicast_host::{HostMove, HostedStage, Link, LinkOptions};
 use posicast_machine::hardware::StageHardware;
 use posicast_machine::machine_file::{self, Machine};
-use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
+use posicast_machine::plant::axis::PlantOptions;
 use posicast_testbench::Error;
 
 /// Clocks after which the probe looks again where the axis is.
@@ -48,9 +48,7 @@ fn machine(more: &str) -> Machine {
 }
 
 fn open<'m>(machine: &'m Machine, stage: &'m StageHardware, contact: i64) -> HostedStage<'m, LinkedBench<Probed>> {
-    let plant = |axis| AxisPlant::new(axis, &machine.clock, &PlantOptions::default()).unwrap();
-    let plants = machine.axes.iter().map(plant).collect();
-    let bench = StageBench::new(&stage.of_machine.config, &stage.component, plants, None, 1).unwrap();
+    let bench = bench(machine, stage, &PlantOptions::default());
     let limit = address_limit(&stage.component);
     let line = LinkedBench::new(Probed { bench, contact }, &LINK, &machine.clock, limit);
     HostedStage::open(Link::new(line, LinkOptions::default()), machine, stage).unwrap()
@@ -112,11 +110,7 @@ fn a_move_without_an_edge_says_so() {
 fn a_stage_without_a_capture_cannot_probe() {
     let machine = machine("");
     let stage = stage(&machine);
-    let plants = machine
-        .axes
-        .iter()
-        .map(|axis| AxisPlant::new(axis, &machine.clock, &PlantOptions::default()).unwrap());
-    let bench = StageBench::new(&stage.of_machine.config, &stage.component, plants.collect(), None, 1).unwrap();
+    let bench = bench(&machine, &stage, &PlantOptions::default());
     let line = LinkedBench::new(bench, &LINK, &machine.clock, address_limit(&stage.component));
     let mut host = HostedStage::open(Link::new(line, LinkOptions::default()), &machine, &stage).unwrap();
     let error = host.probe(way(0, 0.002)).unwrap_err().to_string();

@@ -283,12 +283,16 @@ fn tests(name: &str, filters: &[&str], cases: Option<u64>) -> Result<Rung, Box<d
     ))
 }
 
-/// Runs the fault campaign of a stage with loops, and of one with steps.
+/// Runs the fault campaign of a stage with loops, of one with steps, and of one with absolute encoders.
 fn faults(cases: u64) -> Result<Rung, Box<dyn Error>> {
     let began = Instant::now();
     let mut succeeded = true;
     let mut rows = Vec::new();
-    for (machine, name, share) in [("loops", "stage", 1), ("steps", "stage with steps", 4)] {
+    for (machine, name, share) in [
+        ("loops", "stage", 1),
+        ("steps", "stage with steps", 4),
+        ("absolute", "stage with absolute encoders", 4),
+    ] {
         let cases = (cases / share).max(1);
         let with_rtl = cases.min(36);
         let mut command = Command::new(programs()?.0.join("fault_campaign"));

@@ -105,6 +105,7 @@ pub(crate) const REGISTRY: &[RegistryRow] = &[
     absolute_encoder::ROW,
     capture::ROW,
     inline_axis::ROW,
+    parts::ABSOLUTE_FEEDBACK,
     parts::TIME_BASE,
     parts::SCHEDULE,
     parts::DIVIDER_SHARE,

@@ -47,17 +47,30 @@ pub(super) fn move_axes<'m>(
     }
     let axes: Vec<usize> = moves.iter().map(|of| of.axis).collect();
     let mut stage = open()?;
-    stage.switch_on(&axes, clears_faults).map_err(failure)?;
-    let moved = stage.move_axes(&moves).and_then(|()| correct(&mut stage, &axes));
-    // In any case, the axes end as the user wants them: off. A fault has already switched them off.
-    let off = if holds && moved.is_ok() {
-        Ok(())
-    } else {
-        stage.switch_off(&axes)
-    };
-    let corrected = moved.and_then(|corrected| off.map(|()| corrected)).map_err(failure)?;
+    let corrected = while_on(&mut stage, &axes, [clears_faults, holds], |stage| {
+        stage.move_axes(&moves)?;
+        correct(stage, &axes)
+    })?;
     output::print(&corrected)?;
     super::text::status(&mut stage, false)
+}
+
+/// Switches axes on, does something, and switches them off; with `holds` they stay on where all went well.
+fn while_on<'m, T>(
+    stage: &mut Port<'m>,
+    axes: &[usize],
+    [clears_faults, holds]: [bool; 2],
+    act: impl FnOnce(&mut Port<'m>) -> Result<T, HostError>,
+) -> Result<T, Failure> {
+    stage.switch_on(axes, clears_faults).map_err(failure)?;
+    let done = act(stage);
+    // In any case, the axes end as the user wants them: off. A fault has already switched them off.
+    let off = if holds && done.is_ok() {
+        Ok(())
+    } else {
+        stage.switch_off(axes)
+    };
+    done.and_then(|done| off.map(|()| done)).map_err(failure)
 }
 
 /// Gives the missing steps of these axes, and reports them.
@@ -84,19 +97,22 @@ pub(super) fn home<'m>(
     open: impl FnOnce() -> Result<Port<'m>, Failure>,
 ) -> Result<(), Failure> {
     let index = axis_of(machine, axis, path)?;
+    if machine.axes[index]
+        .encoder
+        .is_some_and(|encoder| encoder.absolute.is_some())
+    {
+        return Err(
+            Failure::input(format!("{}: axis {axis} has an absolute encoder", path.display())).with_help(
+                "it needs no homing: `status` shows its position; correct its zero by `offset` of [axis.encoder]",
+            ),
+        );
+    }
     if machine.axes[index].probe.is_none() {
         return Err(Failure::input(format!("{}: axis {axis} has no probe", path.display()))
             .with_help("add [axis.probe] to the axis, and generate and build the stage anew"));
     }
     let mut stage = open()?;
-    stage.switch_on(&[index], clears_faults).map_err(failure)?;
-    let homed = stage.home(index);
-    let off = if holds && homed.is_ok() {
-        Ok(())
-    } else {
-        stage.switch_off(&[index])
-    };
-    homed.and(off).map_err(failure)?;
+    while_on(&mut stage, &[index], [clears_faults, holds], |stage| stage.home(index))?;
     super::text::status(&mut stage, false)
 }
 
@@ -118,18 +134,12 @@ pub(super) fn probe<'m>(
         return Err(Failure::input(format!("probe: {distance} is not a distance")).with_help("give one other than 0"));
     }
     let mut stage = open()?;
-    stage.switch_on(&[index], clears_faults).map_err(failure)?;
-    let probed = stage.probe(HostMove {
+    let way = HostMove {
         axis: index,
         distance,
         speed: Some(speed),
-    });
-    let off = if holds && probed.is_ok() {
-        Ok(())
-    } else {
-        stage.switch_off(&[index])
     };
-    let probed = probed.and_then(|probed| off.map(|()| probed)).map_err(failure)?;
+    let probed = while_on(&mut stage, &[index], [clears_faults, holds], |stage| stage.probe(way))?;
     let in_unit = |axis: usize, counts: i32| {
         let section = &machine.axes[axis];
         let length = f64::from(counts) / section.counts_per_unit;
@@ -239,14 +249,9 @@ pub(super) fn trace<'m>(
     let mut stage = open()?;
     let trace = match request.shake {
         None => stage.trace(&request).map_err(failure)?,
-        Some(_) => {
-            stage.switch_on(&[axis], args.faults.clear_faults).map_err(failure)?;
-            let trace = stage.trace(&request);
-            let off = stage.switch_off(&[axis]);
-            let trace = trace.map_err(failure)?;
-            off.map_err(failure)?;
-            trace
-        }
+        Some(_) => while_on(&mut stage, &[axis], [args.faults.clear_faults, false], |stage| {
+            stage.trace(&request)
+        })?,
     };
     write(args, &trace)
 }

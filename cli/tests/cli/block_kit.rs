@@ -187,7 +187,10 @@ fn cli_block_that_is_not_there_is_bad_input() {
     };
     refused(&["--block", "flux_capacitor"], "posicast has no such block");
     refused(&["--block", "step_genrator"], "did you mean `step_generator`?");
-    refused(&["--block", "stage"], "choose from: absolute_encoder, axi_lite_bridge");
+    refused(
+        &["--block", "stage"],
+        "choose from: absolute_encoder, absolute_feedback, axi_lite_bridge",
+    );
     let inline = example("inline.toml");
     refused(&[inline.to_str().unwrap(), "--block", "pwm"], "has no such block");
     refused(&["--block", "pwm", "--hal"], "cannot be used with");

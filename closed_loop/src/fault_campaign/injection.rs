@@ -2,8 +2,9 @@
 
 use posicast_blocks::axis::KICK;
 use posicast_blocks::segments::{Entry, EntryMotion, Point};
-use posicast_machine::plant::axis::EncoderPins;
+use posicast_machine::plant::axis::{AbsoluteFault, EncoderPins};
 
+use super::absolute::BITS;
 use super::case::Case;
 use super::kind::FaultKind;
 use crate::stage_bench::{StageBench, StepWire, Wire};
@@ -134,6 +135,12 @@ fn begin_at(bench: &mut StageBench, case: &Case, axis: usize, name: &str) -> Res
         }
         FaultKind::ScaleStuck => bench.force_scale(axis, Some(bench.plant(axis).scale())),
         FaultKind::ScaleIllegal => bench.force_scale(axis, Some(inverted(bench.plant(axis).scale()))),
+        FaultKind::AbsoluteStuck => {
+            bench.fault_absolute_encoder(axis, Some(AbsoluteFault::Stuck(case.choice & 1 != 0)));
+        }
+        FaultKind::AbsoluteBit | FaultKind::AbsoluteBrief => {
+            bench.fault_absolute_encoder(axis, Some(AbsoluteFault::Inverted(case.choice % BITS)));
+        }
         FaultKind::StepsCut => bench.break_step_wire(axis, Some(StepWire::Cut)),
         FaultKind::StepsReversed => bench.break_step_wire(axis, Some(StepWire::Reversed)),
         FaultKind::Jam => bench.jam(axis, true),
@@ -271,6 +278,7 @@ pub(super) fn end(bench: &mut StageBench, case: &Case, way_back: bool) -> Result
             None => {}
         }
         bench.force_encoder(axis, None);
+        bench.fault_absolute_encoder(axis, None);
         bench.break_wire(axis, None);
         bench.break_step_wire(axis, None);
         bench.force_scale(axis, None);

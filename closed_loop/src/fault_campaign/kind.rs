@@ -57,6 +57,9 @@ pub enum FaultKind {
     StepsReversed,
     TooFast,
     Excursion,
+    AbsoluteStuck,
+    AbsoluteBit,
+    AbsoluteBrief,
 }
 
 /// A row of the table.
@@ -83,7 +86,7 @@ const HOST: Due = Due::Clocks(4);
 /// Latency from the encoder's lines to the state: synchroniser, filter, counter, cause, state.
 const ENCODER: Due = Due::Clocks(FILTER_CLOCKS + 6);
 /// Causes to which an axis that no longer follows may lead.
-const LOST: u32 = bits(&[
+pub(super) const LOST: u32 = bits(&[
     Cause::FollowingError,
     Cause::Deviation,
     Cause::Saturation,

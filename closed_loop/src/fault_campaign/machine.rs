@@ -16,6 +16,7 @@ use posicast_machine::plan::design_machine;
 use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
 
 use super::CampaignError;
+use super::absolute;
 use super::kind::{FaultRow, TABLE};
 use super::steps;
 use crate::stage_bench::StageBench;
@@ -107,6 +108,17 @@ impl Bed {
         Ok(Self {
             rows: steps::rows(),
             ..Self::of(steps::change)?
+        })
+    }
+
+    /// Makes the same machine with absolute encoders, and the faults of such a machine.
+    ///
+    /// # Errors
+    /// Those of [`Bed::of`].
+    pub fn with_absolute_encoders() -> Result<Self, CampaignError> {
+        Ok(Self {
+            rows: absolute::rows(),
+            ..Self::of(absolute::change)?
         })
     }
 

@@ -22,6 +22,7 @@
 //! It runs on the event-driven model, or with the RTL beside it, compared in every clock. `docs/fault-campaign.md`
 //! has the table with the figures.
 
+mod absolute;
 mod case;
 mod expectation;
 mod injection;

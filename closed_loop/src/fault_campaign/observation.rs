@@ -8,13 +8,13 @@ use super::machine::{LOST_TICKS, SATURATION_TICKS};
 use crate::stage_bench::{Probe, StageBench};
 use posicast_testbench::Error;
 
-/// Nets that are read; an axis with steps has none of a controller, and they count as 0.
+/// Nets that are read; an axis with steps has none of a controller, and one without a scale no deviation. They count as 0.
 struct Probes {
     state: Probe,
     causes: Probe,
     error: Option<Probe>,
     error_limit: Option<Probe>,
-    deviation: Probe,
+    deviation: Option<Probe>,
     shaped: Probe,
     soft_plus: Probe,
     soft_minus: Probe,
@@ -98,7 +98,7 @@ impl Observation {
                 causes: probe("causes")?,
                 error: probe("error").ok(),
                 error_limit: probe("following_error_limit").ok(),
-                deviation: probe("deviation")?,
+                deviation: probe("deviation").ok(),
                 shaped: probe("shaped_position")?,
                 soft_plus: probe("soft_limit_plus")?,
                 soft_minus: probe("soft_limit_minus")?,
@@ -177,7 +177,7 @@ impl Observation {
         let size = |value: i32| (value ^ (value >> 31)) as u32;
         let probes = &self.probes;
         if tick {
-            let beyond = size(signed(Some(probes.deviation))) > self.deviation_limit;
+            let beyond = size(signed(probes.deviation)) > self.deviation_limit;
             self.deviates = if beyond { self.deviates + 1 } else { 0 };
         }
         let deviates = self.deviation_limit != 0 && self.deviates > self.deviation_ticks;

@@ -28,6 +28,8 @@ const STAY_TICKS: u64 = 3;
 const RINGING_CLOCKS: u64 = 225_000;
 /// Number of clocks in which lines and encoders settle after a fault.
 const SETTLE_CLOCKS: u64 = 200;
+/// Clocks in which an absolute encoder that was lost places its axis again: a reading, and the tick after it.
+const PLACING_CLOCKS: u64 = 3 * TICK_CLOCKS;
 /// Clocks that an encoder's line takes through synchroniser and filter, and a few more.
 const STILL_CLOCKS: u64 = FILTER_CLOCKS + 4;
 /// Largest number of clocks until the brake is open, or a small move is over.
@@ -374,7 +376,8 @@ impl Running<'_> {
                 self.bench.write(&format!("{name}_clear_faults"), 0)?;
             }
         }
-        self.bench.clocks(SETTLE_CLOCKS)?;
+        let lost = (0..names.len()).any(|axis| self.bench.plant(axis).is_absolute()) && !known;
+        self.bench.clocks(if lost { PLACING_CLOCKS } else { SETTLE_CLOCKS })?;
         // Only now no axis wants a group stop any more, so that those that stopped for it can be cleared.
         for name in &names {
             self.bench.write(&format!("{name}_clear_faults"), 0)?;

@@ -15,7 +15,8 @@ pub struct Watched {
     /// Number of clocks with the brake released and the drive disabled. Must be 0.
     pub released_while_disabled: u64,
     /// Largest difference between the counter and the plant's count, since the last reset or
-    /// [`rebase`](super::StageBench::rebase). A count that is still in filter and synchroniser makes it 1.
+    /// [`rebase`](super::StageBench::rebase). A count that is still in filter and synchroniser makes it 1. Stays 0 with an
+    /// absolute encoder, which is not compared.
     pub largest_count_error: u64,
     /// Count of the plant at which the counter is 0.
     pub origin: i64,
@@ -25,6 +26,10 @@ pub struct Watched {
 impl Watched {
     /// Compares the counter with the plant in one clock.
     pub(super) fn look(&mut self, counter: u64, plant: &AxisPlant) {
+        // The position of an absolute encoder comes once per tick: between them the two differ by the axis's motion.
+        if plant.is_absolute() {
+            return;
+        }
         let off_by = (plant.count() - self.origin).abs_diff(signed(counter));
         self.largest_count_error = self.largest_count_error.max(off_by);
     }
@@ -51,7 +56,12 @@ impl Watched {
 
     /// Accepts the counter as it is.
     pub(super) fn rebase(&mut self, counter: u64, plant: &AxisPlant) {
-        self.origin = plant.count() - signed(counter);
+        // The count of an absolute encoder does not restart.
+        self.origin = if plant.is_absolute() {
+            0
+        } else {
+            plant.count() - signed(counter)
+        };
         self.largest_count_error = 0;
     }
 }

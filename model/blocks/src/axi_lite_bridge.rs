@@ -20,7 +20,7 @@
 //! a write  aw, w ready & valid | avm_write | b valid
 //! ```
 
-use super::{Moore, clocked_block, ports};
+use super::{Moore, clocked_block, ports, show_each};
 
 /// Clocks from the handshake of an address to `s_axi_rvalid`, where nothing waits.
 pub const READ_CLOCKS: u32 = 4;
@@ -230,9 +230,7 @@ impl AxiLiteBridge {
 
 impl Moore for AxiLiteBridge {
     fn show(&self, outputs: &mut [u64]) {
-        if let Ok(outputs) = <&mut [u64; OUTPUT_PORTS]>::try_from(outputs) {
-            *outputs = self.outputs().to_raw();
-        }
+        show_each(outputs, self.outputs().to_raw());
     }
 }
 

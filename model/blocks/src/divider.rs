@@ -32,7 +32,7 @@
 //! ```
 
 use super::shaper::wrap;
-use super::{FOREVER, Moore, clocked_block, ports};
+use super::{FOREVER, Moore, clocked_block, ports, show_each};
 
 /// Width of `steps` in bits.
 pub const STEP_BITS: u32 = 18;
@@ -180,9 +180,7 @@ clocked_block!(Divider, "the divider");
 
 impl Moore for Divider {
     fn show(&self, outputs: &mut [u64]) {
-        for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
-            *output = value;
-        }
+        show_each(outputs, self.outputs().to_raw());
     }
 
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {

@@ -14,7 +14,7 @@
 //! - A `divide` while divisions are running is ignored; the counters then flag a missed velocity.
 
 use super::divider::{DIVISION_CLOCKS, ELAPSED_BITS, STEP_BITS};
-use super::{ClockedBlock, FOREVER, Moore, Port, StepError, ports};
+use super::{ClockedBlock, FOREVER, Moore, Port, StepError, ports, show_each};
 
 /// Largest number of channels: four axes, each with a scale.
 pub const MOST_CHANNELS: usize = 8;
@@ -100,9 +100,7 @@ impl Moore for DividerShare {
     fn show(&self, outputs: &mut [u64]) {
         let valid = (0..self.channels).map(|channel| u64::from(self.valid == Some(channel)));
         let shown = [self.start.into(), self.steps, self.elapsed].into_iter().chain(valid);
-        for (output, value) in outputs.iter_mut().zip(shown) {
-            *output = value;
-        }
+        show_each(outputs, shown);
     }
 
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {

@@ -28,7 +28,7 @@
 //! assert_eq!(generator.outputs().generated_count, 10);
 //! ```
 
-use super::{Moore, clocked_block, ports, quiet_at_rest};
+use super::{Moore, clocked_block, ports, quiet_at_rest, show_each};
 
 /// Fraction bits of `rate`.
 pub const RATE_FRACTION: u32 = 32;
@@ -226,9 +226,7 @@ clocked_block!(EncoderGenerator, "the internal encoder");
 
 impl Moore for EncoderGenerator {
     fn show(&self, outputs: &mut [u64]) {
-        for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
-            *output = value;
-        }
+        show_each(outputs, self.outputs().to_raw());
     }
 
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {

@@ -13,7 +13,7 @@
 //!   tick or not at all, and continue in the same tick. It comes a clock late.
 //! - A start of no axis, or of an axis that does not exist, is refused.
 
-use super::{ClockedBlock, FOREVER, Moore, Port, StepError, ports};
+use super::{ClockedBlock, FOREVER, Moore, Port, StepError, ports, show_each};
 
 /// Number of lists of inputs with a port per axis.
 const LISTS: usize = 5;
@@ -102,9 +102,7 @@ impl Moore for Group {
         let bits = |word: u64| (0..self.axes).map(move |axis| word >> axis & 1);
         let shown = bits(self.starts).chain(bits(self.stops)).chain(bits(self.holds));
         let shown = shown.chain([self.emergency_stop.into(), self.refused.into()]);
-        for (output, value) in outputs.iter_mut().zip(shown) {
-            *output = value;
-        }
+        show_each(outputs, shown);
     }
 
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {

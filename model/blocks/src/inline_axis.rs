@@ -28,7 +28,7 @@
 //! # Ok::<(), posicast_blocks::inline_axis::InlineAxisConfigError>(())
 //! ```
 
-use super::{Moore, clocked_block, ports, quiet_at_rest};
+use super::{Moore, clocked_block, ports, quiet_at_rest, show_each};
 
 /// Fraction bits of the positions: those of the shaper's words and of the step generator.
 pub const INLINE_FRACTION: u32 = 8;
@@ -310,9 +310,7 @@ clocked_block!(InlineAxis, "the inline axis");
 
 impl Moore for InlineAxis {
     fn show(&self, outputs: &mut [u64]) {
-        for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
-            *output = value;
-        }
+        show_each(outputs, self.outputs().to_raw());
     }
 
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {

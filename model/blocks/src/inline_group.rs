@@ -14,7 +14,7 @@
 //! run                 ____________/‾‾‾‾‾‾‾   two flip-flops, and a register
 //! ```
 
-use super::{ClockedBlock, FOREVER, Moore, OutputKind, Port, StepError, ports};
+use super::{ClockedBlock, FOREVER, Moore, OutputKind, Port, StepError, ports, show_each};
 
 /// Number of inputs with one port.
 const SINGLE: usize = 6;
@@ -181,9 +181,7 @@ impl InlineGroup {
 
 impl Moore for InlineGroup {
     fn show(&self, outputs: &mut [u64]) {
-        for (output, value) in outputs.iter_mut().zip(self.outputs([false; 2])) {
-            *output = value;
-        }
+        show_each(outputs, self.outputs([false; 2]));
     }
 
     fn output_kind(&self, output: &str) -> OutputKind {
@@ -195,9 +193,7 @@ impl Moore for InlineGroup {
 
     fn show_with(&mut self, inputs: &[u64], outputs: &mut [u64]) {
         let pins = [1, 2].map(|at| inputs.get(at).is_some_and(|level| level & 1 != 0));
-        for (output, value) in outputs.iter_mut().zip(self.outputs(pins)) {
-            *output = value;
-        }
+        show_each(outputs, self.outputs(pins));
     }
 
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {

@@ -4,6 +4,7 @@
 //! lock step compares them.
 
 pub mod absolute_encoder;
+pub mod absolute_feedback;
 pub mod axi_lite_bridge;
 pub mod axis;
 pub mod axis_shaper;
@@ -52,8 +53,8 @@ pub mod uart_bridge;
 pub mod wishbone_bridge;
 pub mod word;
 
-pub(crate) use moore::quiet_at_rest;
 pub use moore::{FOREVER, Moore, OutputKind};
+pub(crate) use moore::{quiet_at_rest, show_each};
 pub use ports::{DescribedPort, PortList, PortNote, PortRow, SizedPortRow, port_notes};
 pub(crate) use ports::{clocked_block, ports};
 

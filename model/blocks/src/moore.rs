@@ -74,6 +74,14 @@ pub trait Moore: ClockedBlock {
     }
 }
 
+/// Writes the values of outputs, in port order.
+#[inline]
+pub(crate) fn show_each(outputs: &mut [u64], values: impl IntoIterator<Item = u64>) {
+    for (output, value) in outputs.iter_mut().zip(values) {
+        *output = value;
+    }
+}
+
 /// Quiet clocks of a block that only waits while a clock changes nothing: [`FOREVER`] then, else 0. `clock` simulates
 /// one of its clocks with the inputs, of which there are `N`.
 pub(crate) fn quiet_at_rest<B: Clone + PartialEq, const N: usize>(

@@ -26,7 +26,7 @@
 //!   start has its word in the first clock of the controller's computation, in which no step uses a setting.
 
 use super::sliding_mode::{SETTINGS, Settings};
-use super::{FOREVER, Moore, clocked_block, ports};
+use super::{FOREVER, Moore, clocked_block, ports, show_each};
 
 ports! {
     setting_banks_ports;
@@ -142,9 +142,7 @@ impl SettingBanks {
 
 impl Moore for SettingBanks {
     fn show(&self, outputs: &mut [u64]) {
-        for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
-            *output = value;
-        }
+        show_each(outputs, self.outputs().to_raw());
     }
 
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {

@@ -12,7 +12,7 @@
 //! registers.
 
 use super::divider::DividerConfig;
-use super::{Moore, OutputKind, clocked_block, ports};
+use super::{Moore, OutputKind, clocked_block, ports, show_each};
 
 ports! {
     time_base_ports;
@@ -95,9 +95,7 @@ impl TimeBase {
 
 impl Moore for TimeBase {
     fn show(&self, outputs: &mut [u64]) {
-        for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
-            *output = value;
-        }
+        show_each(outputs, self.outputs().to_raw());
     }
 
     fn output_kind(&self, output: &str) -> OutputKind {

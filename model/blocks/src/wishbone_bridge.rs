@@ -16,7 +16,7 @@
 //! - When `wb_cyc` falls, what is open is not answered any more; a write that was taken reaches the registers.
 //! - Every output is a function of registers.
 
-use super::{Moore, clocked_block, ports};
+use super::{Moore, clocked_block, ports, show_each};
 
 /// Clocks from a request to its answer.
 pub const ANSWER_CLOCKS: u32 = 3;
@@ -143,9 +143,7 @@ impl WishboneBridge {
 
 impl Moore for WishboneBridge {
     fn show(&self, outputs: &mut [u64]) {
-        if let Ok(outputs) = <&mut [u64; OUTPUT_PORTS]>::try_from(outputs) {
-            *outputs = self.outputs().to_raw();
-        }
+        show_each(outputs, self.outputs().to_raw());
     }
 }
 

@@ -8,6 +8,7 @@ use crate::support::wrong;
 use posicast_blocks::absolute_encoder::{
     AbsoluteEncoder, AbsoluteEncoderConfig, AbsoluteFrame, AbsoluteLimits, AbsoluteProtocol, AbsoluteTimes,
 };
+use posicast_blocks::absolute_feedback::AbsoluteFeedback;
 use posicast_blocks::axis::Axis;
 use posicast_blocks::capture::Capture;
 use posicast_blocks::compare::Compare;
@@ -73,6 +74,12 @@ fn staged_bank() -> RegisterBank {
 }
 
 const RARE: &[u64] = &[0, 0, 0, 0, 0, 0, 0, 0, 0, 1];
+
+const ABSOLUTE_TICKS: [u64; 60] = {
+    let mut values = [0; 60];
+    values[0] = 1;
+    values
+};
 
 const BUS: Hints = &[
     ("avs_read", &[0, 0, 0, 1]),
@@ -232,7 +239,8 @@ fn blocks() -> Vec<Tried> {
             "absolute_encoder",
             &[
                 ("rst", &[0]),
-                ("tick", RARE),
+                // A reading takes some hundred clocks: the block rests only where ticks are rarer than that.
+                ("tick", &ABSOLUTE_TICKS),
                 ("data", &[1, 1, 0]),
                 ("clear_flags", RARE),
             ],
@@ -251,6 +259,17 @@ fn blocks() -> Vec<Tried> {
                     &AbsoluteEncoderConfig::new(AbsoluteProtocol::BissC, frame, times, limits).unwrap(),
                 )
             },
+        ),
+        tried(
+            "absolute_feedback",
+            &[
+                ("rst", RARE),
+                ("tick", RARE),
+                ("reading_valid", RARE),
+                ("preset", RARE),
+                ("sign_bit", &[1 << 11, 1 << 31]),
+            ],
+            AbsoluteFeedback::new,
         ),
         tried(
             "capture",

@@ -92,19 +92,17 @@ pub(super) struct With {
 }
 
 pub(super) fn files(with: With) -> Vec<DriverFile> {
-    let bring_up = BRING_UP.iter().filter(|_| with.bring_up);
-    let error_table = ERROR_TABLE.iter().filter(|_| with.error_table);
-    let correction = CORRECTION.iter().filter(|_| with.correction);
-    let family = FAMILY.iter().filter(|_| with.family);
-    let compare = COMPARE.iter().filter(|_| with.compare);
-    let capture = CAPTURE.iter().filter(|_| with.capture);
+    let parts = [
+        (&BRING_UP, with.bring_up),
+        (&ERROR_TABLE, with.error_table),
+        (&CORRECTION, with.correction),
+        (&FAMILY, with.family),
+        (&COMPARE, with.compare),
+        (&CAPTURE, with.capture),
+    ];
+    let built = parts.into_iter().filter(|(_, is_built)| *is_built);
     CORE.iter()
-        .chain(bring_up)
-        .chain(error_table)
-        .chain(correction)
-        .chain(family)
-        .chain(compare)
-        .chain(capture)
+        .chain(built.flat_map(|(files, _)| files))
         .map(|(path, text)| file(path, (*text).to_owned()))
         .collect()
 }

@@ -112,13 +112,16 @@ fn settings(text: &mut String) {
     let _ = writeln!(text, "#define POSICAST_GAIN_SHIFT_MAX {SHIFT_MAX}u");
 }
 
-/// Writes which axes have a controller, and which have steps.
+/// A bit for each axis that has something.
+fn mask_of(driver: &StageDriver<'_>, has: fn(&StageAxis) -> bool) -> u32 {
+    let axes = driver.config.axes.iter().enumerate();
+    axes.filter(|(_, axis)| has(axis)).map(|(place, _)| 1 << place).sum()
+}
+
+/// Writes which axes have a controller, which have steps, and which are homed.
 fn loops(text: &mut String, driver: &StageDriver<'_>) {
-    let mask = |of: fn(&StageAxis) -> bool| -> u32 {
-        let axes = driver.config.axes.iter().enumerate();
-        axes.filter(|(_, axis)| of(axis)).map(|(place, _)| 1 << place).sum()
-    };
-    text.push_str("\n/* Masks of the axes with a controller, and of those with steps. */\n");
+    let mask = |of| mask_of(driver, of);
+    text.push_str("\n/* Masks of the axes with a controller, of those with steps, and of those that are homed: an absolute encoder needs no homing. */\n");
     let _ = writeln!(
         text,
         "#define POSICAST_LOOP_AXES {:#x}u",
@@ -129,15 +132,16 @@ fn loops(text: &mut String, driver: &StageDriver<'_>) {
         "#define POSICAST_STEPS_AXES {:#x}u",
         mask(|axis| axis.steps().is_some())
     );
+    let _ = writeln!(
+        text,
+        "#define POSICAST_HOMED_AXES {:#x}u",
+        mask(|axis| axis.absolute().is_none())
+    );
 }
 
 /// Writes which axes have the bring-up registers.
 fn bring_up(text: &mut String, driver: &StageDriver<'_>) {
-    let axes = driver.config.axes.iter().enumerate();
-    let mask: u32 = axes
-        .filter(|(_, axis)| axis.bring_up.is_some())
-        .map(|(place, _)| 1 << place)
-        .sum();
+    let mask = mask_of(driver, |axis| axis.bring_up.is_some());
     text.push_str("\n/* Mask of the axes with a trace memory and test signals. */\n");
     let _ = writeln!(text, "#define POSICAST_BRING_UP_AXES {mask:#x}u");
 }
@@ -153,8 +157,7 @@ fn parts_of_axes(text: &mut String, driver: &StageDriver<'_>) {
         ("COMPARE", "with a position compare", |axis| axis.compare.is_some()),
     ];
     for (name, which, has) in parts {
-        let axes = driver.config.axes.iter().enumerate();
-        let mask: u32 = axes.filter(|(_, axis)| has(axis)).map(|(place, _)| 1 << place).sum();
+        let mask = mask_of(driver, has);
         if mask != 0 {
             let _ = writeln!(text, "\n/* Mask of the axes {which}. */");
             let _ = writeln!(text, "#define POSICAST_{name}_AXES {mask:#x}u");

@@ -106,6 +106,9 @@ fn write_axis(text: &mut String, machine: &HalMachine<'_>, number: usize, axis: 
             "HOME_SEARCH_VEL = 0\nHOME_LATCH_VEL = {}\nHOME_USE_INDEX = YES\n",
             figure(INDEX_SEARCH * axis.velocity)
         ),
+        (None, false) if axis.absolute => {
+            "HOME_SEARCH_VEL = 0\nHOME_LATCH_VEL = 0\nHOME_ABSOLUTE_ENCODER = 2\n".to_owned()
+        }
         (None, false) => "HOME_SEARCH_VEL = 0\nHOME_LATCH_VEL = 0\n".to_owned(),
     };
     let kind = if axis.rotary { "ANGULAR" } else { "LINEAR" };

@@ -65,6 +65,8 @@ pub struct HalAxis<'a> {
     pub delay_s: f64,
     /// Whether its encoder has an index.
     pub index: bool,
+    /// Whether its encoder is absolute, so that it needs no homing.
+    pub absolute: bool,
     /// The probe at which it is homed, in place of an index.
     pub probe: Option<HalProbe>,
 }
@@ -213,6 +215,7 @@ mod tests {
             following_error: None,
             delay_s: 0.003,
             index: false,
+            absolute: false,
             probe: None,
         }
     }

@@ -1,6 +1,7 @@
 //! The C driver: compiled by gcc and for a RISC-V, its integers compared with the model's, and run against the
 //! stage's Verilog.
 
+mod absolute;
 mod bridge;
 mod error_table;
 mod family;

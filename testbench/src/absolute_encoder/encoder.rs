@@ -14,7 +14,7 @@ const READY_CLOCKS: u64 = 6;
 
 /// What is wrong with a reading.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(super) enum EncoderFault {
+pub(crate) enum EncoderFault {
     /// Nothing.
     #[default]
     None,
@@ -41,7 +41,7 @@ pub(super) enum EncoderFault {
 }
 
 impl EncoderFault {
-    pub(super) const ALL: [Self; 11] = [
+    pub(crate) const ALL: [Self; 11] = [
         Self::None,
         Self::FlippedBit,
         Self::Silent,
@@ -58,17 +58,17 @@ impl EncoderFault {
 
 /// The encoder.
 #[derive(Debug, Clone)]
-pub(super) struct SimulatedEncoder {
+pub(crate) struct SimulatedEncoder {
     config: AbsoluteEncoderConfig,
     /// Where the axis stands.
-    pub(super) position: u64,
-    pub(super) fault: EncoderFault,
+    pub(crate) position: u64,
+    pub(crate) fault: EncoderFault,
     /// Clocks from its output to `data`, and what is on its way.
-    pub(super) delay: usize,
+    pub(crate) delay: usize,
     /// Whether the delay of a clock is sometimes one longer.
-    pub(super) jitters: bool,
+    pub(crate) jitters: bool,
     /// Periods that BiSS takes to compute.
-    pub(super) computes: u32,
+    pub(crate) computes: u32,
     way: u128,
     clock: bool,
     active: bool,
@@ -80,7 +80,7 @@ pub(super) struct SimulatedEncoder {
 }
 
 impl SimulatedEncoder {
-    pub(super) fn new(config: &AbsoluteEncoderConfig) -> Self {
+    pub(crate) fn new(config: &AbsoluteEncoderConfig) -> Self {
         Self {
             config: *config,
             position: 0,
@@ -104,7 +104,7 @@ impl SimulatedEncoder {
     }
 
     /// The level of `data`, one clock after this level of `clock_out`.
-    pub(super) fn clock(&mut self, clock: bool, rng: &mut Xoshiro256PlusPlus) -> bool {
+    pub(crate) fn clock(&mut self, clock: bool, rng: &mut Xoshiro256PlusPlus) -> bool {
         let (rises, edges) = (clock && !self.clock, clock != self.clock);
         self.clock = clock;
         // It is ready when the block has paused, in spite of the delay.
@@ -214,7 +214,7 @@ fn frame(
 }
 
 /// All positions of the encoder, as a mask.
-pub(super) fn range(config: &AbsoluteEncoderConfig) -> u64 {
+pub(crate) fn range(config: &AbsoluteEncoderConfig) -> u64 {
     (1 << config.frame().position_bits) - 1
 }
 
@@ -232,7 +232,7 @@ fn remainder(bits: &[bool]) -> u64 {
 }
 
 /// A delay of the line that the protocol allows, in clocks.
-pub(super) fn allowed_delay(config: &AbsoluteEncoderConfig, rng: &mut Xoshiro256PlusPlus) -> usize {
+pub(crate) fn allowed_delay(config: &AbsoluteEncoderConfig, rng: &mut Xoshiro256PlusPlus) -> usize {
     let period = config.period_clocks();
     let most = match config.protocol() {
         // One clock passes at the pins of the simulation, and one may be jitter.

@@ -1,6 +1,6 @@
 //! The bench of `absolute_encoder`.
 
-mod encoder;
+pub(crate) mod encoder;
 mod proofs;
 mod reached;
 pub(crate) mod stimuli;
@@ -108,6 +108,14 @@ impl AbsoluteEncoderBlock {
             config,
             prefix: prefix.to_owned(),
             instance: format!("{protocol}, {} bits", config.frame().position_bits),
+        }
+    }
+
+    /// Renames the block to `instance` in the report.
+    pub fn called(self, instance: &str) -> Self {
+        Self {
+            instance: instance.to_owned(),
+            ..self
         }
     }
 }

@@ -7,6 +7,7 @@ use posicast_blocks::component::{Component, ComponentPart as Part, JoinedBlocks}
 
 use super::Block;
 use crate::Error;
+use crate::absolute_encoder::AbsoluteEncoderBlock;
 use crate::axis::AxisBlock;
 use crate::capture::CaptureBlock;
 use crate::compare::CompareBlock;
@@ -109,6 +110,8 @@ fn block_of_part(part: &Part, place: &Place<'_>) -> Result<Option<Box<dyn Block>
         Part::Registers(map) => Box::new(RegistersBlock::new(map.as_ref().clone(), prefix).called(instance)),
         Part::Shaper(config) => Box::new(ShaperBlock::new(config.as_ref().clone(), prefix, instance)?),
         Part::PulseCounter => Box::new(PulseCounterBlock::new(prefix, instance)),
+        Part::AbsoluteEncoder(config) => Box::new(AbsoluteEncoderBlock::new(*config, prefix).called(instance)),
+        Part::AbsoluteFeedback => small(Small::AbsoluteFeedback),
         Part::Divider(config) => Box::new(DividerBlock::new(*config, prefix).called(instance)),
         Part::Pwm(config) => Box::new(PwmBlock::new(*config, prefix, instance)),
         Part::StepGenerator(config) => Box::new(StepGeneratorBlock::new(*config, prefix).called(instance)),

@@ -164,6 +164,7 @@ pub(crate) fn stage() -> Result<StageConfig, Error> {
                 pwm_period_clocks: STAGE_PERIOD_CLOCKS,
                 encoder_filter_clocks: 2,
                 encoder_invert: false,
+                absolute: None,
             })),
             supervision: SUPERVISION,
             probe: None,

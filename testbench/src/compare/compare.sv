@@ -179,8 +179,7 @@ module compare_properties (
     end
 
     // Passages, seen at the ports.
-    reg                was_up = 1'b0, was_down = 1'b0, was_same = 1'b0, was_ready = 1'b0, was_armed = 1'b0, has_last = 1'b0;
-    reg                was_jump = 1'b0, was_disarmed = 1'b0, was_clear = 1'b0, was_pulse = 1'b0;
+    reg                has_last = 1'b0, was_jump = 1'b0, was_disarmed = 1'b0, was_pulse = 1'b0;
     reg  signed [31:0] last_edge = 32'sd0;
     reg         [31:0] passes_before = 32'd0;
     wire signed [47:0] last_wide = {{16{last_edge[31]}}, last_edge};
@@ -196,7 +195,6 @@ module compare_properties (
         past_arm <= arm & !rst;
         was_jump <= !rst & ready & (c1 - c2 > 48'sd1 | c2 - c1 > 48'sd1);
         was_disarmed <= disarm;
-        was_clear <= clear_flags;
         was_pulse <= pulse;
         passes_before <= rst ? 32'd0 : passes;
         if (rst | arm) has_last <= 1'b0;

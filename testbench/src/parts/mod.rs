@@ -1,4 +1,4 @@
-//! The bench of the small blocks that connect others: schedule, divider share, group, inline group, time base, sample
+//! The bench of the small blocks that connect others: schedule, absolute feedback, divider share, group, inline group, time base, sample
 //! select, setting banks, lasting deviation, probe line, realign.
 
 pub(crate) mod proofs;
@@ -16,8 +16,8 @@ use posicast_blocks::sliding_mode::Settings;
 use posicast_blocks::{ClockedBlock, Port};
 use posicast_hdl::emit::{EmitError, Module};
 use posicast_hdl::{
-    SimulationError, divider_share, group, inline_group, lasting_deviation, probe_line, realign, sample_select,
-    schedule, setting_banks, time_base,
+    SimulationError, absolute_feedback, divider_share, group, inline_group, lasting_deviation, probe_line, realign,
+    sample_select, schedule, setting_banks, time_base,
 };
 
 use crate::blocks::changes::Changes;
@@ -28,6 +28,15 @@ use crate::shaper::MOTION;
 use crate::stimuli::Stimuli;
 
 /// The rows of these blocks in the registry.
+pub(crate) const ABSOLUTE_FEEDBACK: RegistryRow = RegistryRow {
+    name: "absolute_feedback",
+    benches: |sizes| Ok(one(PartBlock::new(SmallPart::AbsoluteFeedback, &sizes.prefix))),
+    small: || Ok(small(PartBlock::new(SmallPart::AbsoluteFeedback, ""), "")),
+    proofs: || Ok(vec![proofs::absolute_feedback()?]),
+    trials: || Ok(vec![trials::trial(SmallPart::AbsoluteFeedback, "")]),
+    mutants: trials::ABSOLUTE_FEEDBACK,
+    areas: || Ok(vec![AreaRow::new("", absolute_feedback::emit("")?)]),
+};
 pub(crate) const TIME_BASE: RegistryRow = RegistryRow {
     name: "time_base",
     benches: |sizes| Ok(one(PartBlock::new(SmallPart::TimeBase(sizes.tick), &sizes.prefix))),
@@ -204,6 +213,8 @@ const WIDE_SAMPLES: SmallPart = SmallPart::SampleSelect {
 /// A block that connects others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SmallPart {
+    /// `absolute_feedback`: what an axis takes from its absolute encoder.
+    AbsoluteFeedback,
     /// `schedule`: decides when the controllers start.
     Schedule(ScheduleConfig),
     /// `divider_share`: one divider for this many pulse counters.
@@ -251,6 +262,7 @@ impl PartBlock {
             SmallPart::DividerShare(channels) => (Model::DividerShare(channels), format!("{channels} channels")),
             SmallPart::Group(axes) => (Model::Group(axes), format!("{axes} axes")),
             SmallPart::InlineGroup(config) => (Model::InlineGroup(config), proofs::group_size(config)),
+            SmallPart::AbsoluteFeedback => (Model::AbsoluteFeedback, "alone".to_owned()),
             SmallPart::LastingDeviation => (Model::LastingDeviation, "alone".to_owned()),
             SmallPart::ProbeLine => (Model::ProbeLine, "alone".to_owned()),
             SmallPart::Realign => (Model::Realign, "alone".to_owned()),
@@ -301,6 +313,7 @@ impl Block for PartBlock {
             SmallPart::DividerShare(channels) => divider_share::emit(*channels, prefix),
             SmallPart::Group(axes) => group::emit(*axes, prefix),
             SmallPart::InlineGroup(config) => inline_group::emit(*config, prefix),
+            SmallPart::AbsoluteFeedback => absolute_feedback::emit(prefix),
             SmallPart::LastingDeviation => lasting_deviation::emit(prefix),
             SmallPart::ProbeLine => probe_line::emit(prefix),
             SmallPart::Realign => realign::emit(prefix),
@@ -317,6 +330,7 @@ impl Block for PartBlock {
             SmallPart::DividerShare(channels) => divider_share::name(*channels, prefix),
             SmallPart::Group(axes) => group::name(*axes, prefix),
             SmallPart::InlineGroup(config) => inline_group::name(*config, prefix),
+            SmallPart::AbsoluteFeedback => absolute_feedback::name(prefix),
             SmallPart::LastingDeviation => lasting_deviation::name(prefix),
             SmallPart::ProbeLine => probe_line::name(prefix),
             SmallPart::Realign => realign::name(prefix),
@@ -336,6 +350,7 @@ impl Block for PartBlock {
             SmallPart::DividerShare(channels) => divider_share::simulate(*channels),
             SmallPart::Group(axes) => group::simulate(*axes),
             SmallPart::InlineGroup(config) => inline_group::simulate(*config),
+            SmallPart::AbsoluteFeedback => absolute_feedback::simulate(),
             SmallPart::LastingDeviation => lasting_deviation::simulate(),
             SmallPart::ProbeLine => probe_line::simulate(),
             SmallPart::Realign => realign::simulate(),

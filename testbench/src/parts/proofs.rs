@@ -4,13 +4,13 @@ use posicast_blocks::divider::DividerConfig;
 use posicast_blocks::inline_group::InlineGroupConfig;
 use posicast_blocks::schedule::ScheduleConfig;
 use posicast_blocks::{
-    divider_share as share_model, group as group_model, lasting_deviation as lasting_model, probe_line as probe_model,
-    realign as realign_model, sample_select as select_model, schedule as schedule_model, setting_banks as banks_model,
-    time_base as time_model,
+    absolute_feedback as feedback_model, divider_share as share_model, group as group_model,
+    lasting_deviation as lasting_model, probe_line as probe_model, realign as realign_model,
+    sample_select as select_model, schedule as schedule_model, setting_banks as banks_model, time_base as time_model,
 };
 use posicast_hdl::{
-    divider_share, group, inline_group, lasting_deviation, probe_line, realign, sample_select, schedule, setting_banks,
-    time_base,
+    absolute_feedback, divider_share, group, inline_group, lasting_deviation, probe_line, realign, sample_select,
+    schedule, setting_banks, time_base,
 };
 
 use crate::Error;
@@ -56,6 +56,11 @@ pub(crate) fn inline_group(config: InlineGroupConfig) -> Result<Task, Error> {
     let block = (inline_group::emit(config, "")?, config.ports());
     let task = Task::new("inline_group", &group_size(config), Engine::Pdr, block);
     Ok(task.properties(&macros, include_str!("inline_group.sv")))
+}
+
+pub(crate) fn absolute_feedback() -> Result<Task, Error> {
+    let block = (absolute_feedback::emit("")?, feedback_model::ports());
+    Ok(Task::new("absolute_feedback", "", INDUCTION, block).properties(&[], include_str!("absolute_feedback.sv")))
 }
 
 pub(crate) fn lasting_deviation() -> Result<Task, Error> {

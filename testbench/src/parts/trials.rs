@@ -8,6 +8,34 @@ pub(super) fn trial(part: SmallPart, size: &'static str) -> Trial {
     Trial::new(PartBlock::new(part, "alone"), &[1], 20).size(size)
 }
 
+pub(super) const ABSOLUTE_FEEDBACK: &[BlockMutant] = &[
+    BlockMutant::new(
+        "a first reading that is not taken modulo the range",
+        "(reading_bits - offset) & range",
+        "reading_bits - offset",
+    ),
+    BlockMutant::new(
+        "a direction that the velocity does not follow",
+        "speed = $signed(32'd0 - change)",
+        "speed = $signed(change)",
+    ),
+    BlockMutant::new("a change that wraps", "bounded = MOST", "bounded = speed"),
+    BlockMutant::new(
+        "a controller that starts with the first reading",
+        "control & steady",
+        "control & is_placed",
+    ),
+    BlockMutant::new(
+        "an axis that is ready before it is placed",
+        "drive_ready & (steady | lost)",
+        "drive_ready",
+    ),
+    BlockMutant::new(
+        "an axis that stays placed while its encoder is lost",
+        "reading_known & (is_placed | reading_valid)",
+        "is_placed | reading_valid",
+    ),
+];
 pub(super) const SCHEDULE: &[BlockMutant] = &[BlockMutant::new(
     "a tick that does not begin anew",
     "if (tick) begin",

@@ -15,6 +15,7 @@
 use std::collections::HashMap;
 
 use posicast_blocks::ClockedBlock;
+use posicast_blocks::absolute_encoder::{AbsoluteEncoderConfig, AbsoluteTimes};
 use posicast_blocks::divider::DividerConfig;
 use posicast_blocks::stage::{Follower, StageAxis, StageConfig, StageError, StageLoop};
 use posicast_blocks::step_generator::{StepGeneratorConfig, StepTimes};
@@ -34,6 +35,13 @@ const LEAST_PERIOD_CLOCKS: u32 = 80;
 /// Longest waiting times of the supervisor in ticks: of the brake, and until a monitor acts. A monitor that is off
 /// stays off.
 const MOST_WAIT_TICKS: u16 = 4;
+
+/// Times of the lines of an absolute encoder, which answers at once.
+const ENCODER_TIMES: AbsoluteTimes = AbsoluteTimes {
+    half_period_clocks: 2,
+    pause_clocks: 40,
+    answer_clocks: 40,
+};
 
 /// Number of clocks of the first scenes, which drive most wires.
 const LEAST_CLOCKS: u64 = 60_000;
@@ -124,12 +132,21 @@ pub(crate) fn adapted(sources: &Sources, pairs: &Pairs) -> Result<Sources, Error
 /// Returns the stage with its shortest tick, if that is less than half of its own.
 pub(crate) fn shortened(config: &StageConfig) -> Option<StageConfig> {
     let mut short = config.clone();
+    for axis in &mut short.axes {
+        if let Some(absolute) = axis.closed_loop_mut().and_then(|of| of.absolute.as_mut()) {
+            let of = &absolute.encoder;
+            absolute.encoder =
+                AbsoluteEncoderConfig::new(of.protocol(), *of.frame(), ENCODER_TIMES, of.limits()).ok()?;
+        }
+    }
     let times =
         |of: &StageLoop| u32::from(of.pwm.dead_time_floor_clocks()) + u32::from(of.pwm.minimum_pulse_floor_clocks());
     let loops = config.axes.iter().filter_map(StageAxis::closed_loop);
     let least = (PERIOD_TO_TIMES * loops.map(times).max().unwrap_or(0)).max(LEAST_PERIOD_CLOCKS);
     // The tick has as many periods as fit into the schedule, and is not longer than that.
-    let schedule = config.timing().duty_clocks() + 1;
+    let readings = short.axes.iter().filter_map(StageAxis::absolute);
+    let reading = readings.map(|of| of.encoder.least_tick_clocks() as u32).max();
+    let schedule = (short.timing().duty_clocks() + 1).max(reading.unwrap_or(0));
     let periods = (schedule / least).max(1);
     let period = schedule.div_ceil(periods).max(least);
     short.tick = DividerConfig::new(u64::from(periods * period)).ok()?;

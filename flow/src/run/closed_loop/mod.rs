@@ -2,6 +2,7 @@
 //! alone.
 
 mod contours;
+mod hosted;
 mod pictures;
 mod probing;
 mod pulses;

@@ -1,23 +1,15 @@
 //! Homing by a probe: a host moves each axis that has one to its contact, on the simulated machine.
 
 use super::ClosedLoop;
+use super::hosted::behind_a_line;
 use crate::run::checks::Check;
-use posicast_blocks::linked_stage::address_limit;
-use posicast_closed_loop::linked_bench::LinkedBench;
-use posicast_closed_loop::stage_bench::StageBench;
 use posicast_closed_loop::stage_run::StageRunError;
 use posicast_host::{HostError, HostedStage, Link, LinkOptions};
 use posicast_machine::hardware::StageHardware;
-use posicast_machine::machine_file::{LinkLine, LinkSection, Machine};
-use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
+use posicast_machine::machine_file::Machine;
+use posicast_machine::plant::axis::PlantOptions;
 use posicast_testbench::wording::counted;
 
-/// The line between host and stage, where the machine file has none.
-pub(super) const LINE: LinkSection = LinkSection {
-    line: LinkLine::Uart { baud: 3_000_000 },
-    timeout_s: 0.01,
-    machine_crc: 0,
-};
 /// The contact is at this part of the distance in which the axis searches.
 const CONTACT_AT: f64 = 0.2;
 /// The position after homing may be off by a step: the motor lags behind its steps.
@@ -42,17 +34,11 @@ fn one(machine: &Machine, stage: &StageHardware, seed: u64, axis: usize) -> Resu
         let probe = machine.axes[axis].probe?;
         Some((probe, probe.side.sign() * CONTACT_AT * probe.within))
     };
-    let plants = machine.axes.iter().enumerate().map(|(index, section)| {
-        let options = PlantOptions {
-            contact_at: contact(index).map_or(0.0, |(_, at)| at),
-            ..PlantOptions::default()
-        };
-        AxisPlant::new(section, &machine.clock, &options)
-    });
-    let plants = plants.collect::<Result<Vec<_>, _>>()?;
-    let bench = StageBench::new(&stage.of_machine.config, &stage.component, plants, None, seed)?;
-    let link = machine.link.unwrap_or(LINE);
-    let line = LinkedBench::new(bench, &link, &machine.clock, address_limit(&stage.component));
+    let options = |axis: usize| PlantOptions {
+        contact_at: contact(axis).map_or(0.0, |(_, at)| at),
+        ..PlantOptions::default()
+    };
+    let line = behind_a_line(machine, stage, options, seed)?;
     let homed = || -> Result<i64, HostError> {
         let mut host = HostedStage::open(Link::new(line, LinkOptions::default()), machine, stage)?;
         host.switch_on(&[axis], false)?;

@@ -1,16 +1,13 @@
 //! Pulses of a position compare: a host arms each, moves its axis over a part of its row, and counts.
 
 use super::ClosedLoop;
-use super::probing::LINE;
+use super::hosted::behind_a_line;
 use crate::run::checks::Check;
-use posicast_blocks::linked_stage::address_limit;
-use posicast_closed_loop::linked_bench::LinkedBench;
-use posicast_closed_loop::stage_bench::StageBench;
 use posicast_closed_loop::stage_run::StageRunError;
 use posicast_host::{HostError, HostMove, HostedStage, Link, LinkOptions};
 use posicast_machine::hardware::StageHardware;
 use posicast_machine::machine_file::{AxisSection, CompareDirection, CompareSection, Machine};
-use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
+use posicast_machine::plant::axis::PlantOptions;
 use posicast_testbench::wording::counted;
 
 /// The move passes this many positions at most.
@@ -51,11 +48,7 @@ fn one(
     let Some(way) = way(axis, &compare) else {
         return pulsed(Err("no position is within its travel".to_owned()));
     };
-    let plant = |section| AxisPlant::new(section, &machine.clock, &PlantOptions::default());
-    let plants = machine.axes.iter().map(plant).collect::<Result<Vec<_>, _>>()?;
-    let bench = StageBench::new(&stage.of_machine.config, &stage.component, plants, None, seed)?;
-    let link = machine.link.unwrap_or(LINE);
-    let line = LinkedBench::new(bench, &link, &machine.clock, address_limit(&stage.component));
+    let line = behind_a_line(machine, stage, |_| PlantOptions::default(), seed)?;
     let moves = || -> Result<(u32, u32), HostError> {
         let mut host = HostedStage::open(Link::new(line, LinkOptions::default()), machine, stage)?;
         host.switch_on(&[index], false)?;
@@ -104,7 +97,7 @@ fn way(axis: &AxisSection, compare: &CompareSection) -> Option<Way> {
 impl ClosedLoop<'_> {
     /// The check of the position compares; `None` if there is none.
     pub(super) fn pulsed(&self) -> Option<Check> {
-        let name = "a position compare gives a pulse at each position";
+        let name = "a position compare gives as many pulses as it passes positions";
         let axis = |pulsed: &Pulsed| &self.machine.axes[pulsed.axis];
         let exact = |pulsed: &Pulsed| {
             let of = axis(pulsed);
@@ -120,13 +113,13 @@ impl ClosedLoop<'_> {
             let name = &axis(pulsed).name;
             match &pulsed.seen {
                 Ok((positions, pulses)) => format!(
-                    "axis {name}: {} at {}{}",
+                    "axis {name}: {} on the way over {}{}",
                     counted((*pulses).into(), "pulse"),
                     counted((*positions).into(), "position"),
                     if exact(pulsed) {
                         ""
                     } else {
-                        ", of which at least one each is checked"
+                        ", which are so near that the axis may pass one again"
                     }
                 ),
                 Err(error) => format!("axis {name}: {error}"),

@@ -174,6 +174,43 @@ impl EncoderLine {
         taken
     }
 
+    /// Number of coming clocks of a reading in which only timers count while `data` stays.
+    pub(super) fn quiet_clocks(&self, config: &AbsoluteEncoderConfig, data: bool) -> u64 {
+        let times = config.times();
+        let level = self.synchroniser[1];
+        if self.ended || self.synchroniser != [data; 2] {
+            return 0;
+        }
+        let to_sample = config.period_clocks().saturating_sub(self.phase);
+        let to_half = if self.runs {
+            times.half_period_clocks.saturating_sub(self.half_timer)
+        } else {
+            u64::MAX
+        };
+        let to_answer = times.answer_clocks.saturating_sub(self.elapsed);
+        match self.state {
+            LineState::Answer if config.protocol() == AbsoluteProtocol::Ssi => to_half,
+            LineState::Answer if level => to_half.min(to_answer),
+            LineState::Start => to_half.min(to_answer).min(to_sample),
+            LineState::Acknowledged | LineState::Control | LineState::Bits => to_half.min(to_sample),
+            LineState::Low if level => to_half.min(to_sample),
+            LineState::Pause if !self.runs => times.pause_clocks.saturating_sub(self.elapsed),
+            LineState::Rest | LineState::Answer | LineState::Low | LineState::Pause => 0,
+        }
+    }
+
+    /// Advances the timers by this many such clocks.
+    pub(super) fn pass(&mut self, config: &AbsoluteEncoderConfig, clocks: u64) {
+        self.phase = (self.phase + clocks - 1) % config.period_clocks() + 1;
+        self.elapsed += clocks;
+        if self.runs {
+            self.half_timer += clocks;
+        }
+        if self.rose_twice {
+            self.delay = self.delay.wrapping_add(clocks as u16);
+        }
+    }
+
     /// The clock line; it stops high.
     fn clock_line(&mut self, half_over: bool, begins: bool, stops: bool) {
         if half_over || begins {

@@ -58,7 +58,7 @@ pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, PORTS, ports};
 
 use self::line::{EncoderLine, LineState};
 use self::word::FrameWord;
-use super::{Moore, clocked_block, quiet_at_rest};
+use super::{FOREVER, Moore, clocked_block, show_each};
 
 /// Clocks from the end of a reading to `valid`: difference, limit, count.
 pub const JUDGE_CLOCKS: u64 = 3;
@@ -269,14 +269,33 @@ clocked_block!(AbsoluteEncoder, "the absolute encoder");
 
 impl Moore for AbsoluteEncoder {
     fn show(&self, outputs: &mut [u64]) {
-        for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
-            *output = value;
-        }
+        show_each(outputs, self.outputs().to_raw());
     }
 
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
-        quiet_at_rest(self, inputs, |block, raw| {
-            block.step(&Inputs::from_raw(raw));
-        })
+        let Ok(inputs) = <&[u64; INPUT_PORTS]>::try_from(inputs).map(Inputs::from_raw) else {
+            return 0;
+        };
+        let mut next = self.clone();
+        next.step(&inputs);
+        if next == *self {
+            return FOREVER;
+        }
+        let only_the_line = Self {
+            line: self.line.clone(),
+            ..next
+        };
+        if only_the_line == *self {
+            self.line.quiet_clocks(&self.config, inputs.data)
+        } else {
+            0
+        }
+    }
+
+    fn pass(&mut self, _inputs: &[u64], clocks: u64) {
+        // At rest nothing counts.
+        if self.line.state != LineState::Rest {
+            self.line.pass(&self.config, clocks);
+        }
     }
 }

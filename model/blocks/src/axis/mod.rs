@@ -42,7 +42,7 @@ pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, PORTS, ports};
 pub use transition::{Condition, Conditions, SupervisorState, TRANSITIONS, Transition, next};
 
 use self::registers::Registers;
-use super::{FOREVER, Moore, clocked_block};
+use super::{FOREVER, Moore, clocked_block, show_each};
 
 /// The cycle-accurate model of the supervisor.
 #[derive(Debug, Clone)]
@@ -129,9 +129,7 @@ clocked_block!(Axis, "the axis");
 
 impl Moore for Axis {
     fn show(&self, outputs: &mut [u64]) {
-        for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
-            *output = value;
-        }
+        show_each(outputs, self.outputs().to_raw());
     }
 
     /// Tries one clock: if it changes nothing, the following ones do not either.

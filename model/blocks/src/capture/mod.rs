@@ -40,7 +40,7 @@ mod ports;
 
 pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, PORTS, ports};
 
-use super::{Moore, clocked_block, quiet_at_rest};
+use super::{Moore, clocked_block, quiet_at_rest, show_each};
 use line::CaptureLine;
 
 /// Number of axes.
@@ -143,14 +143,17 @@ clocked_block!(Capture, "the position capture");
 
 impl Moore for Capture {
     fn show(&self, outputs: &mut [u64]) {
-        for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
-            *output = value;
-        }
+        show_each(outputs, self.outputs().to_raw());
     }
 
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
         quiet_at_rest(self, inputs, |next, raw| {
             Capture::step(next, &Inputs::from_raw(raw));
         })
+    }
+
+    /// Positions and time are taken at an edge.
+    fn ignores(&self, input: &str) -> bool {
+        input == "stamp" || input.starts_with("count_")
     }
 }

@@ -35,7 +35,7 @@ mod ports;
 pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, PORTS, ports};
 
 use crate::shaper::Arbitrary;
-use crate::{FOREVER, Moore, clocked_block};
+use crate::{FOREVER, Moore, clocked_block, show_each};
 
 /// Number of positions in the list.
 pub const LIST_POSITIONS: usize = 256;
@@ -137,9 +137,7 @@ clocked_block!(Compare, "the position compare");
 
 impl Moore for Compare {
     fn show(&self, outputs: &mut [u64]) {
-        for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
-            *output = value;
-        }
+        show_each(outputs, self.outputs().to_raw());
     }
 
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {

@@ -1,6 +1,8 @@
 //! Blocks of any kind joined to one, as needed for the model and the Verilog of the whole.
 
 use crate::Moore;
+use crate::absolute_encoder::{AbsoluteEncoder, AbsoluteEncoderConfig};
+use crate::absolute_feedback::AbsoluteFeedback;
 use crate::axis::Axis;
 use crate::capture::Capture;
 use crate::compare::Compare;
@@ -47,6 +49,10 @@ pub enum ComponentPart {
     },
     /// The pulse counter.
     PulseCounter,
+    /// The absolute encoder.
+    AbsoluteEncoder(AbsoluteEncoderConfig),
+    /// What an axis takes from its absolute encoder.
+    AbsoluteFeedback,
     /// The divider.
     Divider(DividerConfig),
     /// The time base.
@@ -111,6 +117,8 @@ impl ComponentPart {
             Self::SlidingMode => "sliding_mode",
             Self::SettingBanks(_) => "setting_banks",
             Self::PulseCounter => "pulse_counter",
+            Self::AbsoluteEncoder(_) => "absolute_encoder",
+            Self::AbsoluteFeedback => "absolute_feedback",
             Self::Divider(_) => "divider",
             Self::TimeBase(_) => "time_base",
             Self::Segments => "segments",
@@ -144,6 +152,7 @@ impl ComponentPart {
                 | Self::SettingBanks(_)
                 | Self::Pwm(_)
                 | Self::StepGenerator(_)
+                | Self::AbsoluteEncoder(_)
                 | Self::ErrorTable(_)
                 | Self::Trace(_)
                 | Self::InlineAxis(_)
@@ -162,6 +171,8 @@ impl ComponentPart {
             Self::SlidingMode => Box::new(SlidingMode::new()),
             Self::SettingBanks(machine) => Box::new(SettingBanks::new(machine)),
             Self::PulseCounter => Box::new(PulseCounter::new()),
+            Self::AbsoluteEncoder(config) => Box::new(AbsoluteEncoder::new(config)),
+            Self::AbsoluteFeedback => Box::new(AbsoluteFeedback::new()),
             Self::Divider(config) => Box::new(Divider::new(config)),
             Self::TimeBase(config) => Box::new(TimeBase::new(config)),
             Self::Segments => Box::new(Segments::new(seed)),

@@ -55,7 +55,7 @@ pub use ports::{
 
 use super::axis::SupervisorState;
 use super::shaper::wrap;
-use super::{Moore, clocked_block, quiet_at_rest};
+use super::{Moore, clocked_block, quiet_at_rest, show_each};
 
 /// Saturates the controller's duty to the PWM's 17 bits.
 pub fn saturated(controller_duty: i32) -> i32 {
@@ -204,9 +204,7 @@ clocked_block!(DriveCommand, "the drive command");
 
 impl Moore for DriveCommand {
     fn show(&self, outputs: &mut [u64]) {
-        for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
-            *output = value;
-        }
+        show_each(outputs, self.outputs().to_raw());
     }
 
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {

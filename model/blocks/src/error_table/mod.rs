@@ -59,7 +59,7 @@ pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, PORTS, ports};
 
 use self::banks::Banks;
 use self::lookup::{interpolated, weighted};
-use super::{FOREVER, Moore, clocked_block};
+use super::{FOREVER, Moore, clocked_block, show_each};
 
 /// Clocks of a pass, but for those of the fraction.
 const PASS_CLOCKS: u32 = 58;
@@ -201,9 +201,7 @@ clocked_block!(ErrorTable, "the error table");
 
 impl Moore for ErrorTable {
     fn show(&self, outputs: &mut [u64]) {
-        for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
-            *output = value;
-        }
+        show_each(outputs, self.outputs().to_raw());
     }
 
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {

@@ -52,7 +52,7 @@ pub use ports::{DURATION_BITS, ExcitationKind, INPUT_PORTS, Inputs, OUTPUT_PORTS
 pub use wave::{FREQUENCY_BITS, FREQUENCY_FRACTION, PRBS_BITS, TURN_STEPS};
 
 use self::wave::{SCALE_CLOCKS, Wave};
-use super::{Moore, clocked_block, quiet_at_rest};
+use super::{Moore, clocked_block, quiet_at_rest, show_each};
 
 /// Clocks from `valid` to `reference_valid`.
 pub const LATENCY_CLOCKS: u32 = 1;
@@ -199,9 +199,7 @@ clocked_block!(Excitation, "the excitation");
 
 impl Moore for Excitation {
     fn show(&self, outputs: &mut [u64]) {
-        for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
-            *output = value;
-        }
+        show_each(outputs, self.outputs().to_raw());
     }
 
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {

@@ -49,7 +49,7 @@ pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, PORTS, ports};
 pub use ratio::{MANTISSA_BITS, RELATIVE_ERROR_MAX, SHIFT_BITS, ScaleRatio, ScaleRatioError};
 
 use self::ratio::scaled;
-use super::{Moore, clocked_block, quiet_at_rest};
+use super::{Moore, clocked_block, quiet_at_rest, show_each};
 
 /// Clocks of the multiplier for one product.
 pub const PASS_CLOCKS: u32 = 64;
@@ -237,9 +237,7 @@ clocked_block!(LinearScale, "the linear scale");
 
 impl Moore for LinearScale {
     fn show(&self, outputs: &mut [u64]) {
-        for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
-            *output = value;
-        }
+        show_each(outputs, self.outputs().to_raw());
     }
 
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {

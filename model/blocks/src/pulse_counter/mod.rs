@@ -36,7 +36,7 @@ use self::decode::decode;
 pub(super) use self::lines::GlitchFilter;
 use self::lines::Line;
 use self::velocity::Velocity;
-use super::{Moore, clocked_block};
+use super::{Moore, clocked_block, show_each};
 
 /// Clocks after a reset until levels count as known: two for the synchroniser, one for the filter, one for the
 /// decoder.
@@ -244,9 +244,7 @@ clocked_block!(PulseCounter, "the pulse counter");
 
 impl Moore for PulseCounter {
     fn show(&self, outputs: &mut [u64]) {
-        for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
-            *output = value;
-        }
+        show_each(outputs, self.outputs().to_raw());
     }
 
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {

@@ -2,7 +2,7 @@
 
 use super::ports::{INPUT_PORTS, Inputs};
 use super::{LEAD_CLOCKS, Pwm, State};
-use crate::{Moore, OutputKind};
+use crate::{Moore, OutputKind, show_each};
 
 impl State {
     /// Number of further clocks like the last one, which led from `before` to the present state; `None` if it did more
@@ -46,9 +46,7 @@ impl State {
 /// The pins of the gates depend on the raw faults of the same clock; `show` writes them as during a fault.
 impl Moore for Pwm {
     fn show(&self, outputs: &mut [u64]) {
-        for (output, value) in outputs.iter_mut().zip(self.outputs(&Inputs::default()).to_raw()) {
-            *output = value;
-        }
+        show_each(outputs, self.outputs(&Inputs::default()).to_raw());
     }
 
     fn output_kind(&self, output: &str) -> OutputKind {
@@ -60,9 +58,7 @@ impl Moore for Pwm {
 
     fn show_with(&mut self, inputs: &[u64], outputs: &mut [u64]) {
         let inputs = <&[u64; INPUT_PORTS]>::try_from(inputs).map_or_else(|_| Inputs::default(), Inputs::from_raw);
-        for (output, value) in outputs.iter_mut().zip(self.outputs(&inputs).to_raw()) {
-            *output = value;
-        }
+        show_each(outputs, self.outputs(&inputs).to_raw());
     }
 
     /// Tries one clock: if it only counts, it and all like it are quiet.

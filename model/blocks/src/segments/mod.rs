@@ -52,7 +52,7 @@ pub use integrator::{
 pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, PORTS, SegmentsState, ports};
 
 use self::fifo::{Fifo, Pointers};
-use super::{FOREVER, Moore, OutputKind, clocked_block};
+use super::{FOREVER, Moore, OutputKind, clocked_block, show_each};
 
 /// Clocks from a tick until the next one is accepted.
 pub const TICK_CLOCKS: u32 = 52;
@@ -324,9 +324,7 @@ clocked_block!(Segments, "the command FIFO");
 /// The output `low` depends on `low_water`, and may change in the same clock.
 impl Moore for Segments {
     fn show(&self, outputs: &mut [u64]) {
-        for (output, value) in outputs.iter_mut().zip(self.outputs(0).to_raw()) {
-            *output = value;
-        }
+        show_each(outputs, self.outputs(0).to_raw());
     }
 
     fn output_kind(&self, output: &str) -> OutputKind {
@@ -338,9 +336,7 @@ impl Moore for Segments {
 
     fn show_with(&mut self, inputs: &[u64], outputs: &mut [u64]) {
         let low_water = <&[u64; INPUT_PORTS]>::try_from(inputs).map_or(0, |raw| Inputs::from_raw(raw).low_water);
-        for (output, value) in outputs.iter_mut().zip(self.outputs(low_water).to_raw()) {
-            *output = value;
-        }
+        show_each(outputs, self.outputs(low_water).to_raw());
     }
 
     /// The block is quiet only between two ticks.

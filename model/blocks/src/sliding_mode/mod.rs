@@ -43,7 +43,7 @@ pub use settings::{
 };
 
 use self::datapath::{Datapath, LIMIT_STEP, STEPS, address, pass_clocks, step_clocks};
-use super::{FOREVER, Moore, clocked_block};
+use super::{FOREVER, Moore, clocked_block, show_each};
 
 /// Clock of a step in which its operand and its setting are taken.
 const READ_PHASE: u8 = 1;
@@ -181,9 +181,7 @@ clocked_block!(SlidingMode, "the controller");
 
 impl Moore for SlidingMode {
     fn show(&self, outputs: &mut [u64]) {
-        for (output, value) in outputs.iter_mut().zip(self.state.outputs().to_raw()) {
-            *output = value;
-        }
+        show_each(outputs, self.state.outputs().to_raw());
     }
 
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {

@@ -1,5 +1,6 @@
 //! Joins the blocks of an axis: the net of each port, and the inputs that are tied to the machine's constants.
 
+use super::absolute;
 use super::bring_up::TRACED;
 use super::compare;
 use super::config::{Follower, StageAxis, StageLoop};
@@ -128,10 +129,8 @@ const SETTING_BANKS: Nets = &[
 ];
 
 const CONTROLLER: Nets = &[
-    ("start", "control"),
     ("velocity_reference", "shaped_velocity"),
     ("acceleration_reference", "shaped_acceleration"),
-    ("position", "captured_position"),
     ("clear_flags", "clear_sources"),
     ("duty", "controller_duty"),
     ("valid", "controller_valid"),
@@ -204,8 +203,6 @@ const GENERATOR: Nets = &[
     ("z_n", "counter_z_n"),
 ];
 
-const ERROR_TABLE: Nets = &[("measured", "captured_position")];
-
 const EXCITATION: Nets = &[
     ("valid", "shaper_valid"),
     ("y_0", "shaped_position"),
@@ -243,6 +240,11 @@ const AXIS_WITH_LOOP: Nets = &[
 pub(super) fn input_pins(axis: &StageAxis) -> Vec<&'static str> {
     let scale: &[&str] = if axis.scale.is_some() { &SCALE_PINS } else { &[] };
     match axis.follower {
+        Follower::Loop(_) if axis.absolute().is_some() => {
+            let mut pins = [&absolute::INPUT_PINS, &INPUT_PINS[..], scale].concat();
+            pins.retain(|pin| !absolute::LACKS_PINS.contains(pin));
+            pins
+        }
         Follower::Loop(_) => [&INPUT_PINS, scale].concat(),
         Follower::Steps(_) => {
             let pin = |pin: &'static str| match axis.probe {
@@ -258,6 +260,7 @@ pub(super) fn input_pins(axis: &StageAxis) -> Vec<&'static str> {
 pub(super) fn output_pins(axis: &StageAxis) -> Vec<&'static str> {
     let compare = axis.compare.map(|_| compare::PIN);
     let pins = match &axis.follower {
+        Follower::Loop(_) if axis.absolute().is_some() => [&OUTPUT_PINS, &absolute::OUTPUT_PINS[..]].concat(),
         Follower::Loop(_) => OUTPUT_PINS.to_vec(),
         Follower::Steps(config) => [&config.mode().line_names(), &OUTPUT_PINS_WITH_STEPS[..]].concat(),
     };
@@ -276,7 +279,10 @@ pub(super) fn join(axis: &StageAxis, tick_clocks: u32, axes: usize) -> Result<Jo
             shaper,
             ComponentPart::SettingBanks(Box::new(of.settings)),
             ComponentPart::SlidingMode,
-            ComponentPart::PulseCounter,
+            match of.absolute {
+                Some(absolute) => ComponentPart::AbsoluteEncoder(absolute.encoder),
+                None => ComponentPart::PulseCounter,
+            },
             ComponentPart::DriveCommand,
             ComponentPart::Pwm(of.pwm.on_time_base()),
             ComponentPart::Axis,
@@ -289,10 +295,12 @@ pub(super) fn join(axis: &StageAxis, tick_clocks: u32, axes: usize) -> Result<Jo
             ComponentPart::Axis,
         ],
     };
+    blocks.extend(axis.absolute().map(|_| ComponentPart::AbsoluteFeedback));
     blocks.extend(axis.probe.map(|_| ComponentPart::ProbeLine));
     blocks.extend(axis.compare.map(|_| ComponentPart::Compare));
     if let Some(trace) = axis.bring_up {
-        let generator = axis.closed_loop().map(|_| ComponentPart::EncoderGenerator);
+        let counts = axis.closed_loop().filter(|of| of.absolute.is_none());
+        let generator = counts.map(|_| ComponentPart::EncoderGenerator);
         blocks.extend(generator);
         blocks.extend([ComponentPart::Excitation, ComponentPart::Trace(trace)]);
     }
@@ -325,6 +333,12 @@ pub(super) fn join(axis: &StageAxis, tick_clocks: u32, axes: usize) -> Result<Jo
     inputs.retain(|name| name != PLL_LOCKED || axis.closed_loop().is_some());
     inputs.extend(driven);
     let mut outputs = names(&[&TO_STAGE, &output_pins(axis)]);
+    if axis.absolute().is_some() {
+        let lacks = |name: &String| absolute::LACKS_NETS.contains(&name.as_str());
+        inputs.retain(|name| !lacks(name));
+        outputs.retain(|name| !lacks(name));
+        read.retain(|name| name != absolute::LACKS_INTERRUPT);
+    }
     let more = read.into_iter().filter(|name| !outputs.contains(name));
     let more: Vec<String> = more.collect();
     outputs.extend(more);
@@ -348,6 +362,15 @@ fn wire(axis: &StageAxis, tick_clocks: u32, block: &ComponentPart, part: Part) -
         ComponentPart::SettingBanks(_) => on(part, SETTING_BANKS),
         ComponentPart::SlidingMode => on(part, CONTROLLER)
             .tied("modulo", axis.modulo.into())
+            .on("position", measured(axis))
+            .on(
+                "start",
+                if axis.absolute().is_some() {
+                    absolute::CONTROL
+                } else {
+                    "control"
+                },
+            )
             .on("velocity", if on_scale { "loop_velocity" } else { "velocity" })
             .on("position_reference", reference(axis)),
         ComponentPart::PulseCounter if part.name() == SCALE_COUNTER => scale_counter(axis, part),
@@ -362,6 +385,11 @@ fn wire(axis: &StageAxis, tick_clocks: u32, block: &ComponentPart, part: Part) -
                 (Follower::Loop(of), None) => encoder(of, part),
             }
         }
+        ComponentPart::AbsoluteEncoder(_) => absolute::encoder(part),
+        ComponentPart::AbsoluteFeedback => match axis.absolute() {
+            Some(of) => absolute::feedback(of, part),
+            None => part,
+        },
         ComponentPart::StepGenerator(config) => steps::generator(config, reference(axis), part),
         ComponentPart::DriveCommand => on(part, DRIVE_COMMAND)
             .tied("direct_hold_ticks", watched.direct_hold_ticks.into())
@@ -394,7 +422,8 @@ fn wire(axis: &StageAxis, tick_clocks: u32, block: &ComponentPart, part: Part) -
             .tied("limit", watched.deviation_limit.into())
             .tied("ticks", watched.deviation_ticks.into())
             .on("lasting", LASTING_DEVIATION),
-        ComponentPart::ErrorTable(table) => on(part, ERROR_TABLE)
+        ComponentPart::ErrorTable(table) => part
+            .on("measured", measured(axis))
             .on(
                 "drive_enable",
                 match axis.follower {
@@ -424,6 +453,14 @@ fn wire(axis: &StageAxis, tick_clocks: u32, block: &ComponentPart, part: Part) -
             .tied("modulo", axis.modulo.into()),
         ComponentPart::Trace(_) => trace(axis, part),
         _ => part,
+    }
+}
+
+/// Where the axis is at the tick.
+fn measured(axis: &StageAxis) -> &'static str {
+    match axis.absolute() {
+        Some(_) => absolute::POSITION,
+        None => "captured_position",
     }
 }
 
@@ -528,6 +565,10 @@ fn supervisor(axis: &StageAxis, part: Part) -> Part {
         Follower::Loop(_) => on(part, AXIS_WITH_LOOP),
         Follower::Steps(_) => steps::supervisor(part),
     };
+    let part = match axis.absolute() {
+        Some(_) => absolute::supervisor(part),
+        None => part,
+    };
     match axis.scale {
         Some(_) if axis.deviation_lasts() => part.on("deviation", LASTING_DEVIATION),
         Some(_) => part,
@@ -548,6 +589,11 @@ fn trace(axis: &StageAxis, part: Part) -> Part {
         let lacks = match net {
             "deviation" => axis.scale.is_none(),
             net => axis.steps().is_some() && steps::LACKS_SIGNALS.contains(&net),
+        };
+        let net = if net == "captured_position" {
+            measured(axis)
+        } else {
+            net
         };
         (!lacks).then_some(net)
     });

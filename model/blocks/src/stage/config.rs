@@ -1,5 +1,7 @@
 //! Configuration of a stage.
 
+use crate::absolute_encoder::AbsoluteEncoderConfig;
+use crate::absolute_feedback::FEEDBACK_CLOCKS;
 use crate::component::ComponentError;
 use crate::composition::CompositionError;
 use crate::divider::DividerConfig;
@@ -96,6 +98,24 @@ pub struct StageLoop {
     pub encoder_filter_clocks: u32,
     /// Whether the encoder's direction is reversed after reset.
     pub encoder_invert: bool,
+    /// An absolute encoder in place of A, B and index.
+    pub absolute: Option<StageAbsolute>,
+}
+
+/// The absolute encoder of an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StageAbsolute {
+    /// Protocol, frame, times and limits.
+    pub encoder: AbsoluteEncoderConfig,
+    /// Lowest 32 bits of the reading at which the axis is at 0, after reset.
+    pub offset: u32,
+}
+
+impl StageAbsolute {
+    /// Clocks from the tick to the position and velocity that belong to it, at the most.
+    pub fn reading_clocks(&self) -> u32 {
+        self.encoder.most_valid_clocks() as u32 + FEEDBACK_CLOCKS
+    }
 }
 
 impl StageAxis {
@@ -113,6 +133,11 @@ impl StageAxis {
             Follower::Loop(of) => Some(of),
             Follower::Steps(_) => None,
         }
+    }
+
+    /// Its absolute encoder, if it has one.
+    pub fn absolute(&self) -> Option<&StageAbsolute> {
+        self.closed_loop()?.absolute.as_ref()
     }
 
     /// Whether a deviation from its scale acts only once it has lasted.
@@ -216,6 +241,19 @@ pub enum StageError {
         /// Clocks of a tick.
         tick: u32,
     },
+    /// The readings of an absolute encoder take longer than a tick.
+    #[error(
+        "the encoder of axis {axis} takes {clocks} clocks from one reading to the next, and a tick has {tick}: choose a lower \
+         sample rate, or a faster line"
+    )]
+    Reading {
+        /// Name of the axis.
+        axis: String,
+        /// Clocks of a reading and its pause.
+        clocks: u64,
+        /// Clocks of a tick.
+        tick: u32,
+    },
     /// A step generator is built for other ticks or positions than those of the stage.
     #[error(
         "the step generator of axis {axis} is built for ticks of {tick_clocks} clocks and positions with {fraction_bits} \
@@ -260,7 +298,9 @@ impl StageConfig {
             .iter()
             .any(|axis| axis.scale.is_some_and(|scale| scale.closes_loop));
         let controls = self.axes.iter().any(|axis| axis.closed_loop().is_some());
-        StageSchedule::of(&passes, controls, scaled)
+        let readings = self.axes.iter().filter_map(StageAxis::absolute);
+        let reading_clocks = readings.map(StageAbsolute::reading_clocks).max().unwrap_or(0);
+        StageSchedule::of(&passes, controls, scaled, reading_clocks)
     }
 
     /// Bit of the interrupt of an axis's position compare in the interrupt registers. A stage of four axes has none left.
@@ -308,6 +348,15 @@ impl StageConfig {
                     });
                 }
                 Follower::Steps(_) | Follower::Loop(_) => {}
+            }
+            if let Some(of) = axis.absolute()
+                && of.encoder.least_tick_clocks() > u64::from(tick)
+            {
+                return Err(StageError::Reading {
+                    axis: axis.name.clone(),
+                    clocks: of.encoder.least_tick_clocks(),
+                    tick,
+                });
             }
         }
         let schedule = self.timing();

@@ -10,6 +10,7 @@
 //!                │                  ▲  ▲
 //!            axis (supervisor)      │  pulse_counter ◄─ encoder        with [axis.scale]: pulse_counter, linear_scale
 //!                              setting_banks                           with [axis.trace]: trace, excitation, encoder_generator
+//!                                                                      with an absolute encoder: absolute_encoder, absolute_feedback
 //! ```
 //!
 //! A stage is a [`Component`]: blocks joined by names, from which the model here and the Verilog in
@@ -19,6 +20,7 @@
 //! This folder contains only wiring: `axis` joins the blocks of an axis, `registers` defines what a host sees. The
 //! datasheet is `docs/stage.md`.
 
+mod absolute;
 mod axis;
 mod axis_settings;
 mod axis_words;
@@ -33,8 +35,8 @@ mod steps;
 mod supervision;
 
 pub use self::config::{
-    Follower, StageAxis, StageCapture, StageCompare, StageConfig, StageError, StageErrorTable, StageLoop, StageProbe,
-    StageScale,
+    Follower, StageAbsolute, StageAxis, StageCapture, StageCompare, StageConfig, StageError, StageErrorTable,
+    StageLoop, StageProbe, StageScale,
 };
 pub use self::registers::{AXIS_INTERRUPTS, axis_interrupt_bit, axis_window};
 pub(crate) use self::registers::{axis_register, driven_and_read};
@@ -113,9 +115,12 @@ fn wire(config: &StageConfig, block: &ComponentPart, part: Part) -> Part {
             let part = part.on("start", "divider_start").on("done", "divider_done");
             config.axes.iter().enumerate().fold(part, |part, (channel, axis)| {
                 let net = |name: &str| format!("{}_{name}", axis.name);
-                part.on(&format!("steps_of_{channel}"), &net("steps"))
-                    .on(&format!("elapsed_of_{channel}"), &net("elapsed"))
-                    .on(&format!("quotient_valid_{channel}"), &net("quotient_valid"))
+                let part = part.on(&format!("quotient_valid_{channel}"), &net("quotient_valid"));
+                let operands = ["steps", "elapsed"].map(|name| (format!("{name}_of_{channel}"), net(name)));
+                operands.iter().fold(part, |part, (port, net)| match axis.absolute() {
+                    Some(_) => part.tied(port, 0),
+                    None => part.on(port, net),
+                })
             })
         }
         ComponentPart::Group(_) => config.axes.iter().enumerate().fold(part, |part, (index, axis)| {

@@ -1,7 +1,7 @@
 //! The register map of a stage: a window of its own, and one per axis, all alike.
 
 use super::config::{Follower, StageAxis, StageConfig};
-use super::{axis_settings, axis_words, bring_up, capture, compare, error_table, steps};
+use super::{absolute, axis_settings, axis_words, bring_up, capture, compare, error_table, steps};
 use crate::group::MOST_AXES;
 use crate::registers::maps;
 use crate::registers::{Access, Description, Field, FlagSource, Register, WINDOW_WORDS};
@@ -165,6 +165,9 @@ fn interrupts(config: &StageConfig) -> Vec<Field> {
     let mut fields = Vec::new();
     for (index, axis) in (0..).zip(&config.axes) {
         for (place, (name, meaning)) in (0..).zip(AXIS_INTERRUPTS) {
+            if axis.absolute().is_some() && name == absolute::LACKS_INTERRUPT {
+                continue;
+            }
             let bit = index * AXIS_INTERRUPTS.len() as u32 + place;
             fields.push(Field::flag(&format!("{}_{name}", axis.name), bit, meaning));
         }
@@ -235,7 +238,10 @@ pub fn axis_window(axis: &StageAxis) -> Vec<Register> {
         registers.extend(compare::registers(of));
     }
     match &axis.follower {
-        Follower::Loop(_) => registers,
+        Follower::Loop(of) => match &of.absolute {
+            Some(of) => absolute::registers(of, registers),
+            None => registers,
+        },
         Follower::Steps(config) => steps::registers(config, axis.probe.is_some(), registers),
     }
 }

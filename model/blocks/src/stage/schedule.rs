@@ -21,7 +21,8 @@ const OUTPUT_CLOCKS: u32 = 2;
 ///
 /// ```text
 /// tick ─┬─► capture ─► divide, one axis after the other ─► scale ─┬─► control ─► duty at the PWM, for its next boundary
-///       └─► generate ─► shape ────────────────────────────────────┘
+///       ├─► generate ─► shape ────────────────────────────────────┤
+///       └─► read the absolute encoders ───────────────────────────┘
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StageSchedule {
@@ -30,14 +31,17 @@ pub struct StageSchedule {
     scale: u32,
     /// With the error table's pass behind the shaper's.
     shape: u32,
+    /// Clocks of the longest reading of an absolute encoder, and of what follows from it.
+    read: u32,
     /// Whether an axis has a controller.
     controls: bool,
 }
 
 impl StageSchedule {
     /// Computes the schedule of axes with these shapers and clocks of the error tables behind them. `controls`: an axis has a
-    /// controller; `on_scale`: the loop of an axis runs on its scale.
-    pub fn of(axes: &[(&ShaperConfig, u32)], controls: bool, on_scale: bool) -> Self {
+    /// controller; `on_scale`: the loop of an axis runs on its scale; `read`: clocks of the longest reading of an absolute encoder,
+    /// or 0.
+    pub fn of(axes: &[(&ShaperConfig, u32)], controls: bool, on_scale: bool, read: u32) -> Self {
         let passes = axes
             .iter()
             .map(|(shaper, table_clocks)| shaper.pass_clocks(shaper.most_products()) + table_clocks);
@@ -45,13 +49,15 @@ impl StageSchedule {
             divide: axes.len() as u32 * SHARE_CLOCKS,
             scale: if on_scale { linear_scale::LATENCY_CLOCKS } else { 0 },
             shape: passes.max().unwrap_or(0),
+            read,
             controls,
         }
     }
 
     /// Clocks from the tick to the start of controllers and step generators.
     pub fn control_clocks(&self) -> u32 {
-        (CAPTURE_CLOCKS + self.divide + self.scale).max(GENERATE_CLOCKS + self.shape)
+        let measured = CAPTURE_CLOCKS + self.divide + self.scale;
+        measured.max(GENERATE_CLOCKS + self.shape).max(self.read)
     }
 
     /// Clocks from the tick to the new duty, which the PWM takes at its next boundary; in a stage of steps alone, to the start of the
@@ -73,6 +79,9 @@ impl fmt::Display for StageSchedule {
             "capture, divide and scale {CAPTURE_CLOCKS} + {} + {}, beside generate and shape {GENERATE_CLOCKS} + {}; ",
             self.divide, self.scale, self.shape,
         )?;
+        if self.read > 0 {
+            write!(f, "read {}; ", self.read)?;
+        }
         let from = self.control_clocks();
         if self.controls {
             write!(

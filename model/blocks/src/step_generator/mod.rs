@@ -50,7 +50,7 @@ pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, PORTS, ports};
 
 use pulser::Pulser;
 
-use super::{FOREVER, Moore, clocked_block};
+use super::{FOREVER, Moore, clocked_block, show_each};
 
 /// Clocks from the moment in which a step is demanded to the edge of its line, where no reversal has to wait: a step
 /// that the k-th clock of a tick demands shows in clock k + 3 after the tick.
@@ -229,9 +229,7 @@ clocked_block!(StepGenerator, "the step generator");
 
 impl Moore for StepGenerator {
     fn show(&self, outputs: &mut [u64]) {
-        for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
-            *output = value;
-        }
+        show_each(outputs, self.outputs().to_raw());
     }
 
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {

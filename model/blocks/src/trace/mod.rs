@@ -57,7 +57,7 @@ pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, PORTS, TraceState, p
 
 use std::collections::VecDeque;
 
-use super::{FOREVER, Moore, clocked_block};
+use super::{FOREVER, Moore, clocked_block, show_each};
 
 /// Phase of a row.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -292,9 +292,7 @@ clocked_block!(Trace, "the trace memory");
 
 impl Moore for Trace {
     fn show(&self, outputs: &mut [u64]) {
-        for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
-            *output = value;
-        }
+        show_each(outputs, self.outputs().to_raw());
     }
 
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {

@@ -85,7 +85,8 @@ impl AxisHardware {
         let top = self.shaper.as_ref().map_err(Clone::clone)?;
         let top = top.taps().map(|top| Component::shaper(component_shaper(axis, top)));
         let mut components: Vec<Component> = top.transpose().map_err(refused)?.into_iter().collect();
-        if let Some(encoder) = &axis.encoder {
+        // An absolute encoder is read by the stage alone.
+        if let Some(encoder) = axis.encoder.as_ref().filter(|encoder| encoder.absolute.is_none()) {
             let divider = divider()?;
             components.push(Component::pulse_counter(divider, encoder.filter_clocks, encoder.invert).map_err(refused)?);
         }

@@ -155,33 +155,44 @@ impl<'a> Hardware<'a> {
     }
 }
 
-/// The axis to blame if steps of a machine cannot be given, because another axis has neither steps nor a whole loop: `None` if no
-/// axis has steps, or all can be in one stage.
-fn without_steps(machine: &Machine) -> Option<HardwareError> {
-    let stepped = machine.axes.iter().find(|axis| axis.steps.is_some())?;
+/// Whether only a stage operates the axis: it gives steps, and reads absolute encoders.
+fn needs_stage(axis: &AxisSection) -> bool {
+    axis.steps.is_some() || axis.encoder.is_some_and(|encoder| encoder.absolute.is_some())
+}
+
+/// The axis to blame if a machine has an axis that only a stage operates, and another one with neither steps nor a whole loop: `None` if
+/// there is no such axis, or all can be in one stage.
+fn without_loop(machine: &Machine) -> Option<HardwareError> {
+    let needing = machine.axes.iter().find(|axis| needs_stage(axis))?;
     let lacks = |axis: &AxisSection| {
         let looped = axis.encoder.is_some() && axis.pwm.is_some() && axis.drive.is_some() && axis.controller.is_some();
         axis.steps.is_none() && !looped
     };
     let index = machine.axes.iter().position(lacks)?;
     let reason = format!(
-        "axis `{}` has neither [axis.steps] nor a whole loop, so there is no stage that gives the steps of axis `{}`",
-        machine.axes[index].name, stepped.name
+        "axis `{}` has neither [axis.steps] nor a whole loop, so there is no stage that {} axis `{}`",
+        machine.axes[index].name,
+        if needing.steps.is_some() {
+            "gives the steps of"
+        } else {
+            "reads the encoder of"
+        },
+        needing.name
     );
     let help = "add [axis.steps], or [axis.encoder], [axis.pwm], [axis.drive] and [axis.controller]; or describe the axis in a file of \
                 its own";
     Some(HardwareError::new(index, "axis", reason).with_help(help.to_owned()))
 }
 
-/// Makes the stage with its component. If the machine's shapers do not suit a stage, it returns `None` and sets `reason`; with steps,
-/// which only a stage gives, that is an error.
+/// Makes the stage with its component. If the machine's shapers do not suit a stage, it returns `None` and sets `reason`; with an
+/// axis that only a stage operates, that is an error.
 fn complete_stage(
     machine: &Machine,
     design: &MachineDesign,
     reason: &mut Option<HardwareError>,
 ) -> Result<Option<StageHardware>, HardwareError> {
-    let needs_stage = machine.axes.iter().any(|axis| axis.steps.is_some());
-    if let Some(error) = without_steps(machine) {
+    let needs_stage = machine.axes.iter().any(needs_stage);
+    if let Some(error) = without_loop(machine) {
         return Err(error);
     }
     // A machine with only shapers may have words and delays that a stage does not allow; it needs no stage.

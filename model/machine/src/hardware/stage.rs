@@ -10,6 +10,7 @@ use crate::machine_file::{
     ScaleUse,
 };
 use crate::plan::{MachineDesign, TableFamily};
+use posicast_blocks::absolute_encoder::AbsoluteEncoderConfigError;
 use posicast_blocks::divider::{DividerConfig, DividerConfigError};
 use posicast_blocks::error_table::ErrorTableConfigError;
 use posicast_blocks::linear_scale::{ScaleRatio, ScaleRatioError};
@@ -19,8 +20,8 @@ use posicast_blocks::shaper::{ShaperConfig, ShaperConfigError, ShaperMotion};
 use posicast_blocks::sliding_mode::{Law, Settings};
 use posicast_blocks::stage::Supervision;
 use posicast_blocks::stage::{
-    Follower, StageAxis, StageCapture, StageCompare, StageConfig, StageErrorTable, StageLoop, StageProbe, StageScale,
-    StageSchedule,
+    Follower, StageAbsolute, StageAxis, StageCapture, StageCompare, StageConfig, StageErrorTable, StageLoop,
+    StageProbe, StageScale, StageSchedule,
 };
 use posicast_blocks::step_generator::{StepGeneratorConfig, StepGeneratorConfigError};
 use posicast_blocks::trace::{TraceConfig, TraceConfigError};
@@ -79,6 +80,14 @@ pub enum MachineStageError {
         /// The reason.
         error: PwmConfigError,
     },
+    /// The absolute encoder of an axis cannot be read.
+    #[error("axis {axis}: {error}")]
+    Encoder {
+        /// Index of the axis, from 0.
+        axis: usize,
+        /// The reason.
+        error: AbsoluteEncoderConfigError,
+    },
     /// The step generator of an axis cannot be built.
     #[error("axis {axis}: {error}")]
     Steps {
@@ -136,6 +145,7 @@ impl MachineStageError {
             Self::Tick(_) => (0, "clock.sample_hz".to_owned()),
             Self::Shaper { axis, .. } => (*axis, "axis.shaper".to_owned()),
             Self::Pwm { axis, .. } => (*axis, "axis.pwm".to_owned()),
+            Self::Encoder { axis, .. } => (*axis, "axis.encoder".to_owned()),
             Self::Steps { axis, .. } => (*axis, "axis.steps".to_owned()),
             Self::Scale { axis, .. } => (*axis, "axis.scale.counts_per_unit".to_owned()),
             Self::ErrorTable { axis, .. } => (*axis, "axis.error_table.file".to_owned()),
@@ -194,7 +204,9 @@ pub fn stage(machine: &Machine, design: &MachineDesign) -> Result<Option<Machine
         .iter()
         .any(|parts| parts.scale.is_some_and(|scale| scale.closes_loop));
     let controls = axes.iter().any(|parts| matches!(parts.follows, Follows::Loop { .. }));
-    let used_clocks = StageSchedule::of(&passes, controls, on_scale).duty_clocks();
+    let readings = axes.iter().filter_map(|parts| parts.follows.absolute());
+    let reading_clocks = readings.map(StageAbsolute::reading_clocks).max().unwrap_or(0);
+    let used_clocks = StageSchedule::of(&passes, controls, on_scale, reading_clocks).duty_clocks();
     let (mut loops, mut built) = (Vec::new(), Vec::new());
     for (index, parts) in axes.into_iter().enumerate() {
         let timed = timed_loop(&parts, machine, used_clocks)
@@ -223,6 +235,7 @@ enum Follows<'a> {
     Loop {
         pwm: &'a PwmSection,
         encoder: Encoder,
+        absolute: Option<StageAbsolute>,
         config: PwmConfig,
     },
     Steps(StepGeneratorConfig),
@@ -240,12 +253,37 @@ impl<'a> Follows<'a> {
         else {
             return Ok(None);
         };
+        let absolute = absolute(axis, encoder, clock);
         Ok(Some(Self::Loop {
             pwm,
             encoder: *encoder,
+            absolute: absolute.map_err(|error| MachineStageError::Encoder { axis: index, error })?,
             config: pwm_config(pwm, clock).map_err(|error| MachineStageError::Pwm { axis: index, error })?,
         }))
     }
+
+    fn absolute(&self) -> Option<&StageAbsolute> {
+        match self {
+            Self::Loop { absolute, .. } => absolute.as_ref(),
+            Self::Steps(_) => None,
+        }
+    }
+}
+
+/// The hardware of an absolute encoder, if the axis has one. The machine file's check makes sure that there is a largest velocity.
+fn absolute(
+    axis: &AxisSection,
+    encoder: &Encoder,
+    clock: &ClockSection,
+) -> Result<Option<StageAbsolute>, AbsoluteEncoderConfigError> {
+    let Some(section) = &encoder.absolute else {
+        return Ok(None);
+    };
+    let velocity = axis.limits.and_then(|limits| limits.velocity).unwrap_or_default();
+    Ok(Some(StageAbsolute {
+        encoder: section.hardware(clock, velocity * axis.counts_per_unit)?,
+        offset: section.offset,
+    }))
 }
 
 /// The loop of an axis, with gains for its lag; `None` on an axis with steps.
@@ -314,7 +352,12 @@ impl Parts<'_> {
     fn build(self, timed: Option<&TimedLoop>, clock: &ClockSection) -> StageAxis {
         let follower = match self.follows {
             Follows::Steps(config) => Follower::Steps(config),
-            Follows::Loop { pwm, encoder, config } => Follower::Loop(Box::new(StageLoop {
+            Follows::Loop {
+                pwm,
+                encoder,
+                absolute,
+                config,
+            } => Follower::Loop(Box::new(StageLoop {
                 settings: timed.map_or_else(Settings::default, |timed| timed.derived.settings),
                 law: timed.map_or(Law::SlidingMode, |timed| timed.derived.law),
                 pwm: config,
@@ -322,6 +365,7 @@ impl Parts<'_> {
                 pwm_period_clocks: pwm.period_clocks(clock),
                 encoder_filter_clocks: encoder.filter_clocks,
                 encoder_invert: encoder.invert,
+                absolute,
             })),
         };
         StageAxis {

@@ -4,8 +4,8 @@ use super::key::{Default, Key, Values};
 use super::range::COUNTS_PER_UNIT;
 use super::table::Table;
 use super::{
-    AxisSection, ClockSection, FixedPoint, ScaleUse, compare, controller, correction, drive, encoder, error_table,
-    input, limits, mechanics, mode, moving, probe, pwm, scale, shaper, stepper, steps, trace,
+    AxisSection, ClockSection, FixedPoint, ScaleUse, absolute, compare, controller, correction, drive, encoder,
+    error_table, input, limits, mechanics, mode, moving, probe, pwm, scale, shaper, stepper, steps, trace,
 };
 use crate::unit::AxisUnit;
 use posicast_blocks::shaper::MOTION_WORD_BITS;
@@ -142,7 +142,7 @@ pub(super) fn read(
     if let Some(modes) = modes.as_ref().filter(|_| !matches!(choice, Some(None))) {
         shaper::check(table, choice.as_ref().and_then(Option::as_ref), modes, modulo);
     }
-    let encoder = table.table("encoder").map(|t| encoder::read(&t));
+    let encoder = table.table("encoder").map(|t| (encoder::read(&t), t));
     let pwm = table.table("pwm").map(|t| pwm::read(&t, clock));
     let drive = table.table("drive").map(|t| drive::read(&t, unit));
     let controller = table.table("controller").map(|t| controller::read(&t, unit));
@@ -174,6 +174,20 @@ pub(super) fn read(
         error_table::read(&t, of_axis)
     });
     check_needs(table);
+    if let Some((Some(encoder), inner)) = &encoder
+        && let Some(absolute) = &encoder.absolute
+    {
+        let of_axis = absolute::OfAxis {
+            unit,
+            counts_per_unit,
+            limits: limits.as_ref(),
+            clock,
+            fixed_point,
+            modulo,
+        };
+        absolute::check(inner, absolute, &of_axis);
+        check_beside_absolute(table);
+    }
     if let Some((Some(steps), table)) = &steps {
         let of_axis = steps::OfAxis {
             counts_per_unit,
@@ -217,7 +231,7 @@ pub(super) fn read(
         modes: modes?.into_iter().map(|(_, mode)| mode).collect(),
         mechanics,
         family: family?,
-        encoder: not_refused(encoder)?,
+        encoder: not_refused(encoder.map(|(encoder, _)| encoder))?,
         pwm: not_refused(pwm)?,
         drive: not_refused(drive)?,
         controller: not_refused(controller)?,
@@ -395,6 +409,38 @@ fn check_needs(axis: &Table<'_, '_>) {
         let allowed = "either encoder, PWM, drive and controller, or steps, whose drive has a loop of its own; an encoder that \
                        only watches the steps is [axis.scale]";
         axis.contradiction(other, found, allowed, format!("remove [axis.{other}], or [axis.steps]"));
+    }
+}
+
+/// Checks that an axis with an absolute encoder has what reads it, and nothing that needs every count or an index.
+fn check_beside_absolute(axis: &Table<'_, '_>) {
+    for (other, allowed) in [
+        (
+            "scale",
+            "an absolute encoder alone: its position is that of the tick before where a scale is compared; put the absolute encoder at \
+             the load",
+        ),
+        (
+            "compare",
+            "a compare with an encoder of kind \"quadrature\" or with [axis.steps]: the position of an absolute encoder comes once per tick, \
+             and passes many counts at once",
+        ),
+    ] {
+        if axis.has(other) {
+            let found = format!("[axis.{other}] beside an absolute encoder");
+            axis.contradiction(other, found, allowed, format!("remove [axis.{other}]"));
+        }
+    }
+    if axis.lacks("controller") {
+        let found = "an absolute encoder without [axis.controller]";
+        let allowed =
+            "an absolute encoder with [axis.pwm], [axis.drive] and [axis.controller]: the stage reads it at each tick";
+        axis.contradiction(
+            "encoder",
+            found,
+            allowed,
+            "add [axis.controller], or remove [axis.encoder]",
+        );
     }
 }
 

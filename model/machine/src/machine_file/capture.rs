@@ -4,12 +4,9 @@ use super::ClockSection;
 use super::key::{Default, Key, Values};
 use super::range::NumberRange;
 use super::table::Table;
-use posicast_shaper::unit::show_seconds;
 
 /// Range of the filter's time.
 const FILTER_S: NumberRange = NumberRange::closed(0.0, 1.0).unit("s");
-/// Longest filter in clocks.
-const MOST_FILTER_CLOCKS: f64 = u16::MAX as f64;
 
 /// Edge that takes the positions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,9 +40,7 @@ pub struct CaptureSection {
 impl CaptureSection {
     /// Clocks for which the line must have a new level, at least one.
     pub fn filter_clocks(&self, clock: &ClockSection) -> u16 {
-        let clocks = self.filter_s * clock.frequency_hz;
-        // Decimals such as 1e-6 are not exact.
-        (clocks * (1.0 - 1e-9)).ceil().clamp(1.0, MOST_FILTER_CLOCKS) as u16
+        u16::try_from(clock.clocks_up(self.filter_s).max(1)).unwrap_or(u16::MAX)
     }
 }
 
@@ -68,18 +63,12 @@ pub(super) const KEYS: &[Key] = &[
 /// Reads the table.
 pub(super) fn read(table: &Table<'_, '_>, clock: Option<ClockSection>) -> CaptureSection {
     table.allow(KEYS);
-    let word = table.choice("edge", &CaptureEdge::ALL.map(|(_, name)| name));
-    let edge = CaptureEdge::ALL.into_iter().find(|(_, name)| Some(*name) == word);
+    let edge = table.word("edge", &CaptureEdge::ALL);
     let filter_s = table.number("filter_s", FILTER_S).unwrap_or(0.0);
-    let longest_s = clock.map(|clock| MOST_FILTER_CLOCKS / clock.frequency_hz);
-    if let Some(longest_s) = longest_s.filter(|longest_s| filter_s > longest_s * (1.0 + 1e-9)) {
-        let found = format!("filter_s = {}", table.quote("filter_s"));
-        let allowed = format!("at most {}, {MOST_FILTER_CLOCKS} clocks", show_seconds(longest_s, 4));
-        let remedy = "shorten it: the positions are as late as the filter is long";
-        table.contradiction("filter_s", found, allowed, remedy);
-    }
+    let remedy = "shorten it: the positions are as late as the filter is long";
+    table.at_most_clocks(("filter_s", filter_s), clock, u16::MAX.into(), remedy);
     CaptureSection {
-        edge: edge.map_or(CaptureEdge::Rising, |(edge, _)| edge),
+        edge: edge.unwrap_or(CaptureEdge::Rising),
         filter_s,
     }
 }

@@ -18,7 +18,7 @@ const PULSE_S: NumberRange = NumberRange::positive(1.0).unit("s");
 /// Largest number of positions.
 const MOST_POSITIONS: u32 = i32::MAX as u32;
 /// Longest pulse in clocks, which its register holds.
-const MOST_PULSE_CLOCKS: f64 = ((1 << 24) - 1) as f64;
+const MOST_PULSE_CLOCKS: u32 = (1 << 24) - 1;
 /// Decimals such as 0.01 are not exact: a count may be off by this much.
 const NEARLY: f64 = 1e-6;
 
@@ -58,8 +58,7 @@ pub struct CompareSection {
 impl CompareSection {
     /// Clocks of a pulse, rounded up.
     pub fn pulse_clocks(&self, clock: &ClockSection) -> u32 {
-        let clocks = self.pulse_s * clock.frequency_hz;
-        (clocks * (1.0 - 1e-9)).ceil().clamp(1.0, MOST_PULSE_CLOCKS) as u32
+        clock.clocks_up(self.pulse_s).clamp(1, MOST_PULSE_CLOCKS)
     }
 
     /// Counts of the hysteresis, rounded up.
@@ -114,15 +113,14 @@ pub(super) fn read(table: &Table<'_, '_>, unit: AxisUnit) -> Option<CompareSecti
     let spacing = table.quantity("spacing", DISTANCE, unit);
     let positions = table.integer("positions", 1, MOST_POSITIONS);
     let first = table.quantity("first", POSITION, unit).unwrap_or(0.0);
-    let word = table.choice("direction", &CompareDirection::ALL.map(|(_, name)| name));
-    let direction = CompareDirection::ALL.into_iter().find(|(_, name)| Some(*name) == word);
+    let direction = table.word("direction", &CompareDirection::ALL);
     let hysteresis = table.quantity("hysteresis", FROM_ZERO, unit).unwrap_or(0.0);
     let pulse_s = table.required_number("pulse_s", PULSE_S);
     Some(CompareSection {
         spacing: spacing?,
         positions: positions?,
         first,
-        direction: direction.map_or(CompareDirection::Both, |(direction, _)| direction),
+        direction: direction.unwrap_or(CompareDirection::Both),
         hysteresis,
         pulse_s: pulse_s?,
     })
@@ -156,14 +154,12 @@ pub(super) fn check(table: &Table<'_, '_>, compare: &CompareSection, axis: &OfAx
             "lower it: a count or two end the jitter of an encoder",
         );
     }
-    if let Some(clock) = axis.clock {
-        let longest_s = MOST_PULSE_CLOCKS / clock.frequency_hz;
-        if compare.pulse_s > longest_s * (1.0 + 1e-9) {
-            let found = format!("pulse_s = {}", table.quote("pulse_s"));
-            let allowed = format!("at most {}, {MOST_PULSE_CLOCKS} clocks", show_seconds(longest_s, 4));
-            table.contradiction("pulse_s", found, allowed, "shorten it");
-        }
-    }
+    table.at_most_clocks(
+        ("pulse_s", compare.pulse_s),
+        axis.clock,
+        MOST_PULSE_CLOCKS,
+        "shorten it",
+    );
     if let Some(velocity) = axis.limits.and_then(|limits| limits.velocity) {
         let between_s = compare.spacing / velocity;
         if compare.positions > 1 && compare.pulse_s >= between_s {

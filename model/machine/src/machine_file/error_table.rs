@@ -101,8 +101,7 @@ pub(super) struct OfAxis<'a> {
 /// Reads the table; `None` where a value is refused.
 pub(super) fn read(table: &Table<'_, '_>, axis: OfAxis<'_>) -> Option<ErrorTableSection> {
     table.allow(KEYS);
-    let word = table.choice("apply", &ErrorUse::ALL.map(|(_, name)| name));
-    let apply = ErrorUse::ALL.into_iter().find(|(_, name)| Some(*name) == word);
+    let apply = table.word("apply", &ErrorUse::ALL);
     table.require(FILE, "the name of a CSV file beside the machine file");
     let file = table.text(FILE, "the name of a CSV file")?;
     if !is_csv_name(file) {
@@ -134,7 +133,7 @@ pub(super) fn read(table: &Table<'_, '_>, axis: OfAxis<'_>) -> Option<ErrorTable
     match points.and_then(|points| checked(points, axis)) {
         Ok(points) => Some(ErrorTableSection {
             file: file.to_owned(),
-            apply: apply.map_or(ErrorUse::default(), |(apply, _)| apply),
+            apply: apply.unwrap_or_default(),
             points,
         }),
         Err(Refused { found, allowed, remedy }) => {

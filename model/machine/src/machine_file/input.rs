@@ -115,8 +115,7 @@ pub(super) fn read(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option
         "active_low",
         &line_names().into_iter().map(|name| (name, name)).collect::<Vec<_>>(),
     );
-    let beyond = table.choice("beyond_limits", &BeyondLimits::ALL.map(|(_, name)| name));
-    let beyond = BeyondLimits::ALL.into_iter().find(|(_, name)| Some(*name) == beyond);
+    let beyond = table.word("beyond_limits", &BeyondLimits::ALL);
     let kind = kind?;
     let low = low.unwrap_or_default();
     if let Some(other) = low.iter().find(|line| !lines_of(kind).contains(line)) {
@@ -132,7 +131,7 @@ pub(super) fn read(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option
         pulse_s: pulse_s?,
         space_s: space_s.or(pulse_s)?,
         active_low: InlineLinesActiveLow { a, b },
-        beyond_limits: beyond.map_or(BeyondLimits::Stop, |(beyond, _)| beyond),
+        beyond_limits: beyond.unwrap_or(BeyondLimits::Stop),
     };
     if let Some(clock) = clock {
         check_filter(table, &input, &clock);

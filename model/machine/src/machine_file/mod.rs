@@ -27,6 +27,7 @@
 //!
 //! [`posicast_shaper::digitise`] and [`posicast_blocks::shaper`] check whether tables and delays fit the hardware's sizes.
 
+mod absolute;
 mod axis;
 mod capture;
 mod compare;
@@ -62,6 +63,7 @@ mod steps;
 mod table;
 mod trace;
 
+pub use absolute::AbsoluteSection;
 pub use capture::{CaptureEdge, CaptureSection};
 pub use compare::{CompareDirection, CompareSection};
 pub use controller::Controller;
@@ -96,6 +98,7 @@ use posicast_blocks::bus_component::BridgedBus;
 use posicast_blocks::link::Crc;
 use posicast_shaper::axis::{AxisMode, ShapedAxis, ShaperChoice};
 use posicast_shaper::digitise::Digitise;
+use range::RATIO_ROUNDING;
 use reader::Reader;
 use table::Table;
 
@@ -203,6 +206,13 @@ impl ClockSection {
     /// Fabric clocks per sample. The quotient is exact: validation makes sure of it.
     pub fn clocks_per_sample(&self) -> u32 {
         (self.frequency_hz / self.sample_hz).round() as u32
+    }
+
+    /// The smallest whole number of clocks that lasts at least `seconds`. A decimal such as `500e-9`, which binary
+    /// fractions only approximate, does not gain a clock by its rounding.
+    pub fn clocks_up(&self, seconds: f64) -> u32 {
+        let clocks = seconds * self.frequency_hz;
+        (clocks * (1.0 - RATIO_ROUNDING)).ceil() as u32
     }
 
     /// Sample period in seconds.

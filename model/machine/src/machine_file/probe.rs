@@ -8,7 +8,7 @@ use super::table::Table;
 use super::{ClockSection, LimitsSection};
 use crate::unit::AxisUnit;
 use posicast_blocks::pulse_counter::FILTER_CLOCKS_MAX;
-use posicast_shaper::unit::{short, show_seconds};
+use posicast_shaper::unit::short;
 
 /// Range of the filter's time.
 const SHORT_S: NumberRange = NumberRange::closed(0.0, 1.0).unit("s");
@@ -65,9 +65,7 @@ pub struct ProbeSection {
 impl ProbeSection {
     /// Clocks of the line's filter; at most [`FILTER_CLOCKS_MAX`], which the reader checks.
     pub fn filter_clocks(&self, clock: &ClockSection) -> u32 {
-        let clocks = self.filter_s * clock.frequency_hz;
-        // Decimals such as 1e-6 are not exact.
-        (clocks * (1.0 - 1e-9)).ceil().min(FILTER_CLOCKS_MAX.into()) as u32
+        clock.clocks_up(self.filter_s).min(FILTER_CLOCKS_MAX)
     }
 }
 
@@ -132,8 +130,7 @@ pub(super) fn read(table: &Table<'_, '_>, unit: AxisUnit, clock: Option<ClockSec
     ] {
         table.require(key, what.to_owned());
     }
-    let word = table.choice("side", &ProbeSide::ALL.map(|(_, name)| name));
-    let side = ProbeSide::ALL.into_iter().find(|(_, name)| Some(*name) == word);
+    let side = table.word("side", &ProbeSide::ALL);
     let [velocity, slow, within, retract] =
         ["velocity", "slow_velocity", "within", "retract"].map(|key| table.quantity(key, MOTION, unit));
     let filter_s = table.number("filter_s", SHORT_S).unwrap_or(0.0);
@@ -143,24 +140,15 @@ pub(super) fn read(table: &Table<'_, '_>, unit: AxisUnit, clock: Option<ClockSec
     let probe = ProbeSection {
         active_low,
         filter_s,
-        side: side.map_or(ProbeSide::Minus, |(side, _)| side),
+        side: side.unwrap_or(ProbeSide::Minus),
         velocity,
         slow_velocity: slow.unwrap_or(velocity / SLOWER),
         within: within?,
         retract: retract?,
         position,
     };
-    let longest_s = clock.map(|clock| f64::from(FILTER_CLOCKS_MAX) / clock.frequency_hz);
-    if let Some(longest_s) = longest_s.filter(|longest_s| filter_s > longest_s * (1.0 + 1e-9)) {
-        let found = format!("filter_s = {}", table.quote("filter_s"));
-        let allowed = format!("at most {}, {FILTER_CLOCKS_MAX} clocks", show_seconds(longest_s, 4));
-        table.contradiction(
-            "filter_s",
-            found,
-            allowed,
-            "shorten it: a contact that bounces later does not matter",
-        );
-    }
+    let remedy = "shorten it: a contact that bounces later does not matter";
+    table.at_most_clocks(("filter_s", filter_s), clock, FILTER_CLOCKS_MAX, remedy);
     Some(probe)
 }
 

@@ -66,20 +66,13 @@ impl PwmSection {
 
     /// Dead time in clocks, rounded up.
     pub fn dead_time_clocks(&self, clock: &ClockSection) -> u32 {
-        clocks_up(self.dead_time_s, clock)
+        clock.clocks_up(self.dead_time_s)
     }
 
     /// Shortest pulse in clocks, rounded up.
     pub fn minimum_pulse_clocks(&self, clock: &ClockSection) -> u32 {
-        clocks_up(self.minimum_pulse_s, clock)
+        clock.clocks_up(self.minimum_pulse_s)
     }
-}
-
-/// The smallest whole number of clocks that lasts at least `seconds`. A decimal such as `500e-9`, which binary
-/// fractions only approximate, does not gain a clock by its rounding.
-fn clocks_up(seconds: f64, clock: &ClockSection) -> u32 {
-    let clocks = seconds * clock.frequency_hz;
-    (clocks * (1.0 - RATIO_ROUNDING)).ceil() as u32
 }
 
 /// The keys of the table.
@@ -114,11 +107,11 @@ pub(super) const KEYS: &[Key] = &[
 /// Reads the table; `None` where a value is refused. Checks that need a valid clock are skipped without one.
 pub(super) fn read(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option<PwmSection> {
     table.allow(KEYS);
-    let mode = table.required_choice("mode", &PwmMode::ALL.map(|(_, name)| name));
-    let mode = PwmMode::ALL.into_iter().find(|(_, name)| Some(*name) == mode);
+    table.require("mode", PwmMode::ALL.map(|(_, name)| name).join(", "));
+    let mode = table.word("mode", &PwmMode::ALL);
     let frequency_hz = table.required_number("frequency_hz", FREQUENCY_HZ);
     let pwm = PwmSection {
-        mode: mode.map_or(PwmMode::Direction, |(mode, _)| mode),
+        mode: mode.unwrap_or(PwmMode::Direction),
         frequency_hz: frequency_hz?,
         dead_time_s: table.number("dead_time_s", SHORT_S).unwrap_or(0.0),
         minimum_pulse_s: table.number("minimum_pulse_s", SHORT_S).unwrap_or(0.0),
@@ -231,7 +224,7 @@ mod tests {
             (1.0, 50_000_000),
         ];
         for (seconds, clocks) in cases {
-            assert_eq!(clocks_up(seconds, &clock), clocks, "{seconds} s");
+            assert_eq!(clock.clocks_up(seconds), clocks, "{seconds} s");
         }
     }
 }

@@ -56,9 +56,7 @@ pub(super) const KEYS: &[Key] = &[
 pub(super) fn read(axis: &Table<'_, '_>, table: &Table<'_, '_>, unit: AxisUnit) -> Option<Scale> {
     table.allow(KEYS);
     let counts_per_unit = table.required_counts("counts_per_unit", COUNTS_PER_UNIT, unit);
-    let word = table.choice("use", &ScaleUse::ALL.map(|(_, name)| name));
-    let usage = ScaleUse::ALL.into_iter().find(|(_, name)| Some(*name) == word);
-    let usage = usage.map_or(ScaleUse::default(), |(usage, _)| usage);
+    let usage = table.word("use", &ScaleUse::ALL).unwrap_or_default();
     if usage == ScaleUse::Position && !axis.has("controller") {
         let found = "use = \"position\" without [axis.controller]";
         let allowed = "position on an axis with [axis.controller], whose loop it closes; else monitor";

@@ -170,10 +170,7 @@ pub(super) fn read(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option
     let kind = kind(table, "kind");
     let half_sample_hz = clock.map_or(LOWEST_HZ, |c| c.sample_hz / 2.0);
     let lowest = NumberRange::positive(half_sample_hz).open_above().unit("Hz");
-    let structure = table.choice(STRUCTURE, &ShaperStructure::ALL.map(|(_, name)| name));
-    let structure = ShaperStructure::ALL
-        .into_iter()
-        .find(|(_, name)| Some(*name) == structure);
+    let structure = table.word(STRUCTURE, &ShaperStructure::ALL);
     let (tolerance, order) = (table.number("tolerance", TOLERANCE), order(table));
     let epsilon = table.number("epsilon", TOLERANCE);
     let base = table
@@ -194,7 +191,7 @@ pub(super) fn read(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option
         taps,
         prefer: prefer.map(|(_, prefer)| prefer),
         kind,
-        structure: structure.map(|(structure, _)| structure).unwrap_or_default(),
+        structure: structure.unwrap_or_default(),
         tolerance,
         order,
         epsilon,

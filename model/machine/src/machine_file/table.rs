@@ -12,12 +12,14 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use super::ClockSection;
 use super::error::ProblemCause;
 use super::hint;
 use super::names::{NAME_RULE, is_name, mended};
-use super::range::NumberRange;
+use super::range::{NumberRange, RATIO_ROUNDING};
 use super::reader::Reader;
 use crate::spelling::did_you_mean;
+use posicast_shaper::unit::show_seconds;
 
 /// One table of the file.
 pub(super) struct Table<'r, 't> {
@@ -261,6 +263,29 @@ impl<'r, 't> Table<'r, 't> {
             self.report(key, ProblemCause::NotAChoice { found, allowed: list }, remedy);
         }
         word
+    }
+
+    /// The value that one of these words stands for.
+    pub(super) fn word<T: Copy, const N: usize>(&self, key: &str, words: &[(T, &str); N]) -> Option<T> {
+        let word = self.choice(key, &words.map(|(_, name)| name))?;
+        let found = words.iter().find(|(_, name)| *name == word);
+        found.map(|(value, _)| *value)
+    }
+
+    /// Refuses a time that is longer than this many clocks.
+    pub(super) fn at_most_clocks(
+        &self,
+        (key, seconds): (&str, f64),
+        clock: Option<ClockSection>,
+        most: u32,
+        remedy: &str,
+    ) {
+        let longest_s = clock.map(|clock| f64::from(most) / clock.frequency_hz);
+        if let Some(longest_s) = longest_s.filter(|longest_s| seconds > longest_s * (1.0 + RATIO_ROUNDING)) {
+            let found = format!("{key} = {}", self.quote(key));
+            let allowed = format!("at most {}, {most} clocks", show_seconds(longest_s, 4));
+            self.contradiction(key, found, allowed, remedy);
+        }
     }
 
     /// One of a list of words; the key is required.

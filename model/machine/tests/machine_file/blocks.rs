@@ -50,7 +50,8 @@ fn every_block_yields_its_values() {
         Some(Encoder {
             filter_clocks: 8,
             index: true,
-            invert: false
+            invert: false,
+            absolute: None,
         })
     );
     let pwm = axis.pwm.unwrap();
@@ -93,7 +94,8 @@ fn what_is_left_out_has_its_default() {
         Some(Encoder {
             filter_clocks: 0,
             index: false,
-            invert: false
+            invert: false,
+            absolute: None,
         })
     );
     let pwm = axis.pwm.unwrap();

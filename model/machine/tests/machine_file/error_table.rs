@@ -66,7 +66,7 @@ fn a_stage_with_a_table_takes_its_clocks_longer() {
     assert_eq!(latency, 76);
     let shaper = &stage.config.axes[0].shaper;
     let [without, with] =
-        [0, latency].map(|clocks| StageSchedule::of(&[(shaper, clocks)], true, false).control_clocks());
+        [0, latency].map(|clocks| StageSchedule::of(&[(shaper, clocks)], true, false, 0).control_clocks());
     assert!(with > without && with <= without + latency, "{without}, {with}");
 }
 

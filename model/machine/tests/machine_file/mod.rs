@@ -1,5 +1,6 @@
 //! Tests of the machine file from its users' point of view.
 
+mod absolute;
 mod blocks;
 mod capture;
 mod compare;

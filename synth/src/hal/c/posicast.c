@@ -135,6 +135,7 @@ static void limit_travel(uint32_t axis)
     axes[axis].limits_wait = 0;
 }
 
+#if POSICAST_HOMED_AXES
 /* LinuxCNC arms the index by index-enable, and the component takes it back where the position was set to 0 at the index. */
 static void follow_index(uint32_t axis)
 {
@@ -170,6 +171,7 @@ static void follow_index(uint32_t axis)
         *index_enable = 0;
     }
 }
+#endif
 
 static void show(uint32_t axis)
 {
@@ -209,7 +211,10 @@ static void read_stage(void *argument, long period)
         causes[axis] = posicast_causes(&hardware, axis);
         ok = ok && status[axis] & POSICAST_AXIS_STATUS_LEVEL_EMERGENCY_STOP_N_MSK;
         if (!posicast_link_is_broken()) {
-            follow_index(axis);
+#if POSICAST_HOMED_AXES
+            if (POSICAST_HOMED_AXES >> axis & 1u)
+                follow_index(axis);
+#endif
             if (axes[axis].limits_wait)
                 limit_travel(axis);
         }

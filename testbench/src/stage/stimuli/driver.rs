@@ -598,6 +598,7 @@ impl Driver {
     fn index(&mut self, axis: usize) {
         let any = self.rng.next_u32();
         self.tell(axis, "index", any & 0x13f3);
+        self.tell(axis, "velocity_filter", any & 0x300);
         self.tell(axis, "index_arm", 0);
         let preset = any >> 16;
         self.tell(axis, "preset", preset);

@@ -4,12 +4,14 @@
 mod driver;
 mod reads;
 
-use posicast_blocks::component::Component;
+use posicast_blocks::absolute_encoder::AbsoluteEncoderConfig;
+use posicast_blocks::component::{Component, ComponentPart};
 use posicast_blocks::registers::{Access, Register, RegisterMap};
 use posicast_blocks::{Direction, Port};
 
 use self::driver::{Driver, Moves, Pins, SCENES};
 use self::reads::{Clears, ReadBack};
+use crate::absolute_encoder::encoder::{EncoderFault, SimulatedEncoder, range};
 use crate::registers::RegistersRandom;
 use crate::registers::stimuli::{ADDRESS, BYTE_ENABLE, READ, WRITE, WRITE_DATA};
 use crate::stimuli::Stimuli;
@@ -35,6 +37,9 @@ const SCENES_TO_A_RESET: usize = 5;
 const STEP_CLOCKS: i32 = 48;
 /// Least number of clocks between two steps, so that the encoder's filter passes them.
 const EDGE_CLOCKS: u32 = 12;
+/// A fault of an absolute encoder begins once in so many clocks, and lasts for as many as one of these ticks.
+const ENCODER_FAULT_CLOCKS: u32 = 20_000;
+const ENCODER_FAULT_TICKS: [u32; 4] = [1, 2, 3, 6];
 
 /// Settings that hold for a while.
 #[derive(Debug, Clone, Copy)]
@@ -71,6 +76,33 @@ struct AxisPins {
     invert: bool,
     /// Whether both lines change at once in the next step.
     slips: bool,
+    absolute: Option<AbsolutePins>,
+}
+
+/// The pins of an absolute encoder, and the encoder.
+#[derive(Debug, Clone)]
+struct AbsolutePins {
+    /// Index of the data among the inputs, and of the clock among the outputs.
+    data: usize,
+    clock: usize,
+    encoder: SimulatedEncoder,
+    /// Reading at which the axis is at 0.
+    offset: u64,
+    range: u64,
+    /// Clocks left of a fault.
+    fault_clocks: u32,
+}
+
+/// The absolute encoder of an axis, as the stage is built for it.
+fn absolute_encoder<'a>(component: &'a Component, axis: &str) -> Option<&'a AbsoluteEncoderConfig> {
+    let of_axis = component.blocks().find_map(|part| match part {
+        ComponentPart::Joined(joined) if joined.name() == axis => Some(joined),
+        _ => None,
+    });
+    of_axis?.blocks().find_map(|part| match part {
+        ComponentPart::AbsoluteEncoder(config) => Some(config),
+        _ => None,
+    })
 }
 
 /// A line and the time for which it is low.
@@ -134,7 +166,19 @@ impl StageRandom {
             let [a, b, z] = encoder("");
             let own = [a, b, z.or_else(|| input(&format!("{axis}_probe")))];
             let shown = ["a_high", "b_high", "drive_enable", "brake_release"];
+            let absolute = absolute_encoder(component, axis).map(|config| AbsolutePins {
+                data: input(&format!("{axis}_encoder_data")).unwrap_or(0),
+                clock: place(ports, Direction::Output, &format!("{axis}_encoder_clock")).unwrap_or(0),
+                encoder: SimulatedEncoder::new(config),
+                offset: component
+                    .map()
+                    .register(&format!("{axis}_encoder_offset"))
+                    .map_or(0, |register| register.reset().into()),
+                range: range(config),
+                fault_clocks: 0,
+            });
             AxisPins {
+                absolute,
                 encoders: [own, encoder("scale_")],
                 switches: [0, 1].map(|which| input(&format!("{axis}_{}", LINES[which].0)).unwrap_or(0)),
                 shown: shown.map(|pin| place(ports, Direction::Output, &format!("{axis}_{pin}")).unwrap_or(0)),
@@ -293,6 +337,32 @@ impl StageRandom {
         }
     }
 
+    /// Answers the stage as the absolute encoders do, now and then with a fault.
+    fn absolute_encoders(&mut self, seen: &[u64], inputs: &mut [u64]) {
+        for at in 0..self.axes.len() {
+            if self.axes[at].absolute.is_none() {
+                continue;
+            }
+            let fails = !self.mood.scene && self.one_in(ENCODER_FAULT_CLOCKS);
+            let (fault, ticks) = (self.pick(&EncoderFault::ALL), self.pick(&ENCODER_FAULT_TICKS));
+            let count = i64::from(self.axes[at].count);
+            let Some(of) = &mut self.axes[at].absolute else {
+                continue;
+            };
+            if fails {
+                of.fault_clocks = ticks * self.tick_clocks;
+                of.encoder.fault = fault;
+            }
+            if of.fault_clocks == 0 {
+                of.encoder.fault = EncoderFault::None;
+            }
+            of.fault_clocks = of.fault_clocks.saturating_sub(1);
+            of.encoder.position = of.offset.wrapping_add_signed(count) & of.range;
+            let clock = self.clock < 2 || seen.get(of.clock).is_none_or(|level| level & 1 != 0);
+            inputs[of.data] = of.encoder.clock(clock, &mut self.registers.rng).into();
+        }
+    }
+
     fn lines(&mut self, inputs: &mut [u64]) {
         for at in 0..self.lines.len() {
             let rarer = self.lines[at].pace * self.axes.len() as u32;
@@ -346,6 +416,7 @@ impl StageRandom {
         self.pins(seen);
         inputs[0] = self.reset().into();
         self.encoders(seen, inputs);
+        self.absolute_encoders(seen, inputs);
         self.lines(inputs);
         self.think(seen);
         self.driver.pass(waiting);
@@ -372,7 +443,8 @@ impl StageRandom {
         self.reset_clocks = self.reset_clocks.saturating_sub(1);
         let resets = between || self.clock < 2 || !self.mood.scene && self.one_in(self.mood.reset_pace);
         if resets {
-            for axis in &mut self.axes {
+            // The count of an absolute encoder does not restart.
+            for axis in self.axes.iter_mut().filter(|axis| axis.absolute.is_none()) {
                 axis.origin = axis.count;
             }
         }
@@ -412,6 +484,7 @@ impl Stimuli for StageRandom {
         }
         inputs[0] = self.reset().into();
         self.encoders(seen, inputs);
+        self.absolute_encoders(seen, inputs);
         self.lines(inputs);
         self.drive(seen, inputs);
         for read_back in &mut self.read_back {

@@ -26,7 +26,7 @@ typedef struct {
 } posicast_homing;
 
 /*
- * Homes an axis in HOLD, and ends at rest. `ticks` limits each of its moves, of which there are up to three. Returns
+ * Homes an axis in HOLD, and ends at rest. An axis with an absolute encoder is not homed: POSICAST_BAD_ARGUMENT. `ticks` limits each of its moves, of which there are up to three. Returns
  * POSICAST_NO_REFERENCE if switch or index was not found within its distance: the axis rests, and its position is not valid.
  * POSICAST_WRONG_STATE, POSICAST_FAULT and POSICAST_TIMEOUT are as for moves; after POSICAST_TIMEOUT the axis is stopping.
  */
@@ -64,7 +64,8 @@ int32_t posicast_origin(const posicast_stage *stage, uint32_t axis);
 posicast_result posicast_limit_travel(const posicast_stage *stage, uint32_t axis, int32_t low, int32_t high);
 
 /*
- * Returns whether the axis has been homed and has not lost its position since. A lost encoder or an encoder error ends that, as a
+ * Returns whether the axis has been homed and has not lost its position since; with an absolute encoder, whether that says where the
+ * axis stands. A lost encoder or an encoder error ends that, as a
  * reset does, and HOMED cannot be set before posicast_switch_on has cleared that cause.
  */
 int posicast_is_homed(const posicast_stage *stage, uint32_t axis);

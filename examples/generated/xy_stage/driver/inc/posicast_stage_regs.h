@@ -52,9 +52,10 @@
 #define POSICAST_GAIN_MANTISSA_BITS 18u
 #define POSICAST_GAIN_SHIFT_MAX 31u
 
-/* Masks of the axes with a controller, and of those with steps. */
+/* Masks of the axes with a controller, of those with steps, and of those that are homed: an absolute encoder needs no homing. */
 #define POSICAST_LOOP_AXES 0x3u
 #define POSICAST_STEPS_AXES 0x0u
+#define POSICAST_HOMED_AXES 0x3u
 
 /* Mask of the axes with a trace memory and test signals. */
 #define POSICAST_BRING_UP_AXES 0x0u

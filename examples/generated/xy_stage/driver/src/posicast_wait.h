@@ -28,6 +28,16 @@ posicast_result posicast_wait_status(const posicast_stage *stage, uint32_t axis,
 /* Waits until flags that a write has caused can be read. */
 posicast_result posicast_wait_flags(const posicast_stage *stage);
 
+/* What a search looks for: returns whether it is there. `status` is a word of STATUS, read before. */
+typedef int (*posicast_look)(const posicast_stage *stage, uint32_t axis, uint32_t status, void *context);
+
+/*
+ * Moves an axis over a distance, in counts * 256, until `look` finds something, and lets it come to rest. Returns
+ * POSICAST_NO_REFERENCE if the move ends before.
+ */
+posicast_result posicast_seek(const posicast_stage *stage, uint32_t axis, const posicast_limits *limits, int32_t distance,
+                              posicast_look look, void *context, uint32_t ticks);
+
 /* Returns the FLAGS of an axis. */
 uint32_t posicast_flags(const posicast_stage *stage, uint32_t axis);
 

@@ -92,6 +92,12 @@ impl Encoder {
         self.shown
     }
 
+    /// The count after so many clocks of the cell, however fast the motion.
+    pub(super) fn sampled(&self, clocks: u32) -> i64 {
+        let part = f64::from(clocks) / f64::from(self.cell_clocks);
+        nearest(self.from + (self.to - self.from) * part)
+    }
+
     pub(super) fn pins(&self) -> EncoderPins {
         let lines = ((self.shown + 1) & 2 != 0, self.shown & 2 != 0);
         let (a, b) = if self.reversed { (lines.1, lines.0) } else { lines };

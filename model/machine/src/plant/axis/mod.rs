@@ -55,6 +55,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod absolute;
 mod drive;
 mod encoder;
 mod figures;
@@ -65,10 +66,12 @@ mod step_lines;
 mod stepper;
 mod two_mass;
 
+pub use absolute::AbsoluteFault;
 pub use encoder::EncoderPins;
 pub use figures::{ErrorFigures, contour_error, residual_vibration, tracking_error};
 pub use pins::DrivePins;
 
+use self::absolute::AbsoluteEncoder;
 use self::drive::Driven;
 use self::encoder::{Contact, Encoder};
 use self::modes::LoadModes;
@@ -229,6 +232,7 @@ pub struct AxisPlant {
     modes: LoadModes,
     encoder_at: Coordinate,
     encoder: Encoder,
+    absolute: Option<AbsoluteEncoder>,
     scale: Option<Encoder>,
 }
 
@@ -256,7 +260,12 @@ impl AxisPlant {
         // The scale is a second encoder, at the load.
         let scale = axis.scale.map(|scale| scale.counts_per_unit);
         let scales = [Some(axis.counts_per_unit), scale];
-        for counts_per_unit in scales.into_iter().flatten() {
+        let absolute = axis.encoder.as_ref().and_then(|encoder| {
+            let section = encoder.absolute.as_ref()?;
+            Some(AbsoluteEncoder::new(section, encoder.invert, clock))
+        });
+        // An absolute encoder has no edges that could be too fast.
+        for counts_per_unit in scales.into_iter().flatten().filter(|_| absolute.is_none()) {
             check(axis, &motor, clock, counts_per_unit, options.position)?;
         }
         let plant = Plant::of_axis(axis).map_err(|source| AxisPlantError::Modes { axis: name(), source })?;
@@ -323,6 +332,7 @@ impl AxisPlant {
             encoder: encoder(axis.counts_per_unit, has_index.then_some(options.index_at))
                 .reversed(is_reversed)
                 .with_contact(contact),
+            absolute,
             scale: scale.map(|counts_per_unit| encoder(counts_per_unit, None).reversed(is_scale_reversed)),
         })
     }
@@ -335,19 +345,50 @@ impl AxisPlant {
     /// Simulates this many clocks with these pins.
     #[inline]
     pub fn clocks(&mut self, pins: DrivePins, clocks: u64) {
+        if let Some(absolute) = &mut self.absolute {
+            absolute.pass(clocks);
+        }
         let mut left = clocks;
         while left > 0 {
             let now = left.min(u64::from(self.cell_clocks - self.passed)) as u32;
             left -= u64::from(now);
             self.input.add(&pins, now);
             self.passed += now;
-            self.encoder.pass(self.passed);
+            if self.absolute.is_none() {
+                self.encoder.pass(self.passed);
+            }
             if let Some(scale) = &mut self.scale {
                 scale.pass(self.passed);
             }
             if self.passed == self.cell_clocks {
                 self.end_cell();
             }
+        }
+    }
+
+    /// Shows an absolute encoder the level of its line's clock in this clock, before [`quiet_clocks`](Self::quiet_clocks) and
+    /// [`clocks`](Self::clocks). An axis without one ignores it.
+    pub fn encoder_clock(&mut self, level: bool) {
+        let count = self.count();
+        if let Some(absolute) = &mut self.absolute {
+            absolute.see(level, count);
+        }
+    }
+
+    /// The data line of an absolute encoder in this clock; low without one.
+    pub fn encoder_data(&self) -> bool {
+        self.absolute.as_ref().is_some_and(AbsoluteEncoder::data)
+    }
+
+    /// Whether the axis has an absolute encoder.
+    pub fn is_absolute(&self) -> bool {
+        self.absolute.is_some()
+    }
+
+    /// Gives the absolute encoder a fault, or mends it. An axis without one ignores it.
+    pub fn set_absolute_fault(&mut self, fault: Option<AbsoluteFault>) {
+        if let Some(absolute) = &mut self.absolute {
+            absolute.set_fault(fault);
         }
     }
 
@@ -397,6 +438,11 @@ impl AxisPlant {
     /// the pins do. It is at most a cell and a clock, because later motion is not yet known.
     #[inline]
     pub fn quiet_clocks(&self) -> u64 {
+        if let Some(absolute) = &self.absolute {
+            return absolute
+                .quiet_clocks()
+                .min(u64::from(self.cell_clocks + 1 - self.passed));
+        }
         let scale = self.scale.as_ref().map_or(u32::MAX, Encoder::quiet_until);
         u64::from(self.encoder.quiet_until().min(scale) - self.passed)
     }
@@ -405,6 +451,7 @@ impl AxisPlant {
     /// steps, those that the drive has taken.
     pub fn count(&self) -> i64 {
         match &self.input {
+            DriveInput::Pwm(_) if self.absolute.is_some() => self.encoder.sampled(self.passed),
             DriveInput::Pwm(_) => self.encoder.count(),
             DriveInput::Steps(lines) => lines.steps(),
         }

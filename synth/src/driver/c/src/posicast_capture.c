@@ -66,60 +66,30 @@ static int can_find(const posicast_stage *stage)
     return edges == RISES ? !is_high : edges == FALLS ? is_high : edges != 0;
 }
 
-/* Waits for an edge; returns POSICAST_NO_REFERENCE if the move ends before. */
-static posicast_result wait_edge(const posicast_stage *stage, uint32_t axis, posicast_edge *edge, uint32_t ticks)
+static int has_edge(const posicast_stage *stage, uint32_t axis, uint32_t status, void *context)
 {
-    posicast_patience left = posicast_patience_for(stage, ticks);
-
-    for (;;) {
-        /* The status is read before the edge: a move that has ended was looked at to its end. */
-        const uint32_t word = posicast_status(stage, axis);
-        posicast_result result = posicast_take_edge(stage, edge);
-
-        if (result == POSICAST_OK)
-            return result;
-        if (posicast_causes(stage, axis) != 0)
-            return POSICAST_FAULT;
-        if (state_of(word) == POSICAST_AXIS_STATUS_STATE_HOLD)
-            return POSICAST_NO_REFERENCE;
-        result = posicast_pass_time(stage, &left);
-        if (result != POSICAST_OK)
-            return result;
-    }
+    (void)axis;
+    (void)status;
+    return posicast_take_edge(stage, context) == POSICAST_OK;
 }
 
 posicast_result posicast_probe(const posicast_stage *stage, uint32_t axis, const posicast_way *way, posicast_edge *edge,
                                int32_t *overrun, uint32_t ticks)
 {
-    int64_t end;
-    posicast_result found, result;
+    posicast_result result;
 
     *overrun = 0;
     if (!is_axis(stage, axis) || way->distance == 0)
-        return POSICAST_BAD_ARGUMENT;
-    end = (int64_t)posicast_command_position(stage, axis) + way->distance;
-    if (end < INT32_MIN || end > INT32_MAX)
         return POSICAST_BAD_ARGUMENT;
     if (posicast_state(stage, axis) != POSICAST_AXIS_STATUS_STATE_HOLD)
         return POSICAST_WRONG_STATE;
     if (!can_find(stage))
         return POSICAST_NO_REFERENCE;
     posicast_capture_begin(stage);
-    result = posicast_queue_move(stage, axis, (int32_t)end, &way->limits);
-    if (result == POSICAST_OK)
-        result = posicast_start(stage, 1u << axis);
-    if (result != POSICAST_OK) {
-        posicast_capture_end(stage);
-        return result;
-    }
-    found = wait_edge(stage, axis, edge, ticks);
-    posicast_stop(stage, 1u << axis);
+    result = posicast_seek(stage, axis, &way->limits, way->distance, has_edge, edge, ticks);
     /* A later touch is not one of this move. */
     posicast_capture_end(stage);
-    if (found != POSICAST_OK && found != POSICAST_NO_REFERENCE)
-        return found;
-    result = posicast_wait_at_rest(stage, 1u << axis, ticks);
-    if (result == POSICAST_OK && found == POSICAST_OK)
+    if (result == POSICAST_OK)
         *overrun = (int32_t)((uint32_t)IORD_POSICAST_AXIS_POSITION(stage->base, axis) - (uint32_t)edge->positions[axis]);
-    return result == POSICAST_OK ? found : result;
+    return result;
 }

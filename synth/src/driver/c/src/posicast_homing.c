@@ -3,53 +3,51 @@
 
 #include "posicast_wait.h"
 
+#if POSICAST_HOMED_AXES
+/* An axis with an absolute encoder is not homed, and has no registers for it. */
+static int is_homed_here(uint32_t axis)
+{
+    return (POSICAST_HOMED_AXES >> axis & 1u) != 0;
+}
+
+static void set_homed(const posicast_stage *stage, uint32_t axis, uint32_t homed)
+{
+    if (is_homed_here(axis))
+        IOWR_POSICAST_AXIS_HOMED(stage->base, axis, homed);
+}
+
 static int32_t position_of(const posicast_stage *stage, uint32_t axis)
 {
     return (int32_t)IORD_POSICAST_AXIS_POSITION(stage->base, axis);
 }
 
-/* Waits until STATUS has the wanted bits; returns POSICAST_NO_REFERENCE if the move ends before. */
-static posicast_result watch(const posicast_stage *stage, uint32_t axis, uint32_t mask, uint32_t wanted, uint32_t ticks)
+/* Bits of STATUS, and where the axis was when they came. */
+typedef struct {
+    uint32_t mask;
+    uint32_t wanted;
+    int32_t found_at;
+} status_bits;
+
+static int has_bits(const posicast_stage *stage, uint32_t axis, uint32_t status, void *context)
 {
-    posicast_patience left = posicast_patience_for(stage, ticks);
+    status_bits *bits = context;
 
-    for (;;) {
-        const uint32_t word = posicast_status(stage, axis);
-        posicast_result result;
-
-        if ((word & mask) == wanted)
-            return POSICAST_OK;
-        if (posicast_causes(stage, axis) != 0)
-            return POSICAST_FAULT;
-        if (state_of(word) == POSICAST_AXIS_STATUS_STATE_HOLD)
-            return POSICAST_NO_REFERENCE;
-        result = posicast_pass_time(stage, &left);
-        if (result != POSICAST_OK)
-            return result;
-    }
+    if ((status & bits->mask) != bits->wanted)
+        return 0;
+    bits->found_at = position_of(stage, axis);
+    return 1;
 }
 
 /* Moves over a distance until STATUS has the wanted bits, and comes to rest. `found_at` is the position at that time. */
 static posicast_result seek(const posicast_stage *stage, uint32_t axis, const posicast_limits *limits, int32_t distance,
                             uint32_t mask, uint32_t wanted, uint32_t ticks, int32_t *found_at)
 {
-    const int64_t end = (int64_t)posicast_command_position(stage, axis) + distance;
-    posicast_result found, result;
+    status_bits bits = {mask, wanted, 0};
+    const posicast_result result = posicast_seek(stage, axis, limits, distance, has_bits, &bits, ticks);
 
-    if (end < INT32_MIN || end > INT32_MAX)
-        return POSICAST_BAD_ARGUMENT;
-    result = posicast_queue_move(stage, axis, (int32_t)end, limits);
     if (result == POSICAST_OK)
-        result = posicast_start(stage, 1u << axis);
-    if (result != POSICAST_OK)
-        return result;
-    found = watch(stage, axis, mask, wanted, ticks);
-    *found_at = position_of(stage, axis);
-    posicast_stop(stage, 1u << axis);
-    if (found != POSICAST_OK && found != POSICAST_NO_REFERENCE)
-        return found;
-    result = posicast_wait_at_rest(stage, 1u << axis, ticks);
-    return result == POSICAST_OK ? found : result;
+        *found_at = bits.found_at;
+    return result;
 }
 
 /* Searches for the edge of the switch, from the side on which it is not pressed. */
@@ -97,7 +95,7 @@ posicast_result posicast_home(const posicast_stage *stage, uint32_t axis, const 
     posicast_result result = POSICAST_OK;
     int32_t found_at;
 
-    if (!is_axis(stage, axis))
+    if (!is_axis(stage, axis) || !is_homed_here(axis))
         return POSICAST_BAD_ARGUMENT;
     if (posicast_state(stage, axis) != POSICAST_AXIS_STATUS_STATE_HOLD)
         return POSICAST_WRONG_STATE;
@@ -139,12 +137,12 @@ posicast_result posicast_home_by_probe(const posicast_stage *stage, uint32_t axi
     posicast_result result = POSICAST_OK;
     int32_t found_at;
 
-    if (!is_axis(stage, axis) || probing->within == 0 || probing->retract <= 0 || probing->retract > INT32_MAX / 2)
+    if (!is_axis(stage, axis) || !is_homed_here(axis) || probing->within == 0 || probing->retract <= 0 || probing->retract > INT32_MAX / 2)
         return POSICAST_BAD_ARGUMENT;
     if (posicast_state(stage, axis) != POSICAST_AXIS_STATUS_STATE_HOLD)
         return POSICAST_WRONG_STATE;
     /* The approaches go past the contact, where the travel of an earlier homing may end. */
-    IOWR_POSICAST_AXIS_HOMED(stage->base, axis, 0);
+    set_homed(stage, axis, 0u);
     if (posicast_status(stage, axis) & touches)
         result = retract(stage, axis, probing, ticks);
     if (result == POSICAST_OK)
@@ -157,6 +155,32 @@ posicast_result posicast_home_by_probe(const posicast_stage *stage, uint32_t axi
         result = retract(stage, axis, probing, ticks);
     return result;
 }
+#else
+static void set_homed(const posicast_stage *stage, uint32_t axis, uint32_t homed)
+{
+    (void)stage;
+    (void)axis;
+    (void)homed;
+}
+
+posicast_result posicast_home(const posicast_stage *stage, uint32_t axis, const posicast_homing *homing, uint32_t ticks)
+{
+    (void)stage;
+    (void)axis;
+    (void)homing;
+    (void)ticks;
+    return POSICAST_BAD_ARGUMENT;
+}
+
+posicast_result posicast_home_by_probe(const posicast_stage *stage, uint32_t axis, const posicast_probing *probing, uint32_t ticks)
+{
+    (void)stage;
+    (void)axis;
+    (void)probing;
+    (void)ticks;
+    return POSICAST_BAD_ARGUMENT;
+}
+#endif
 
 int32_t posicast_origin(const posicast_stage *stage, uint32_t axis)
 {
@@ -174,10 +198,10 @@ posicast_result posicast_limit_travel(const posicast_stage *stage, uint32_t axis
     if (minus < INT32_MIN || plus > INT32_MAX)
         return POSICAST_BAD_ARGUMENT;
     /* The axis must not be homed while one limit is still the old one. */
-    IOWR_POSICAST_AXIS_HOMED(stage->base, axis, 0);
+    set_homed(stage, axis, 0u);
     IOWR_POSICAST_AXIS_SOFT_LIMIT_MINUS(stage->base, axis, (uint32_t)(int32_t)minus);
     IOWR_POSICAST_AXIS_SOFT_LIMIT_PLUS(stage->base, axis, (uint32_t)(int32_t)plus);
-    IOWR_POSICAST_AXIS_HOMED(stage->base, axis, POSICAST_AXIS_HOMED_HOMED_VALUE_MSK);
+    set_homed(stage, axis, 1u);
     return posicast_wait_flags(stage);
 }
 

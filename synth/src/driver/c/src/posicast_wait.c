@@ -100,3 +100,46 @@ posicast_result posicast_wait_ticks(const posicast_stage *stage, uint32_t ticks)
     } while (result == POSICAST_OK);
     return result == POSICAST_TIMEOUT ? POSICAST_OK : result;
 }
+
+/* Waits until `look` finds something; returns POSICAST_NO_REFERENCE if the move ends before. */
+static posicast_result watch(const posicast_stage *stage, uint32_t axis, posicast_look look, void *context, uint32_t ticks)
+{
+    posicast_patience left = posicast_patience_for(stage, ticks);
+
+    for (;;) {
+        /* The status is read first: a move that has ended is looked at to its end. */
+        const uint32_t word = posicast_status(stage, axis);
+        posicast_result result;
+
+        if (look(stage, axis, word, context))
+            return POSICAST_OK;
+        if (posicast_causes(stage, axis) != 0)
+            return POSICAST_FAULT;
+        if (state_of(word) == POSICAST_AXIS_STATUS_STATE_HOLD)
+            return POSICAST_NO_REFERENCE;
+        result = posicast_pass_time(stage, &left);
+        if (result != POSICAST_OK)
+            return result;
+    }
+}
+
+posicast_result posicast_seek(const posicast_stage *stage, uint32_t axis, const posicast_limits *limits, int32_t distance,
+                              posicast_look look, void *context, uint32_t ticks)
+{
+    const int64_t end = (int64_t)posicast_command_position(stage, axis) + distance;
+    posicast_result found, result;
+
+    if (end < INT32_MIN || end > INT32_MAX)
+        return POSICAST_BAD_ARGUMENT;
+    result = posicast_queue_move(stage, axis, (int32_t)end, limits);
+    if (result == POSICAST_OK)
+        result = posicast_start(stage, 1u << axis);
+    if (result != POSICAST_OK)
+        return result;
+    found = watch(stage, axis, look, context, ticks);
+    posicast_stop(stage, 1u << axis);
+    if (found != POSICAST_OK && found != POSICAST_NO_REFERENCE)
+        return found;
+    result = posicast_wait_at_rest(stage, 1u << axis, ticks);
+    return result == POSICAST_OK ? found : result;
+}
