@@ -44,7 +44,9 @@ pub(crate) fn others(
     let first = hardware.axes().iter().find_map(|axis| axis.control.as_ref());
     let sizes = BenchSizes {
         prefix: machine.name.clone(),
-        with_encoder: axes(machine, |axis| axis.encoder.is_some()),
+        with_encoder: axes(machine, |axis| {
+            axis.encoder.is_some_and(|encoder| encoder.absolute.is_none())
+        }),
         with_controller: axes(machine, |axis| axis.controller.is_some()),
         tick: hardware.divider().map_err(|error| of_hardware(&error, path))?,
         pwms: pwms(machine, path)?,

@@ -19,9 +19,9 @@ const SHAPER: [(&str, &str); 1] = pages!["shaper"];
 /// Datasheets of machines with components.
 const COMPONENTS: [(&str, &str); 5] = pages!["registers" "pulse_counter" "divider" "pwm" "sliding_mode"];
 /// Datasheets of machines with a stage.
-const STAGE: [(&str, &str); 12] = pages![
+const STAGE: [(&str, &str); 13] = pages![
     "stage" "axis" "segments" "drive_command" "linear_scale" "error_table" "encoder_generator" "excitation" "trace"
-    "step_generator" "compare" "capture"
+    "step_generator" "compare" "capture" "absolute_encoder"
 ];
 /// Datasheets of machines whose stage or inline shaper has a line to a host.
 const LINK: [(&str, &str); 1] = pages!["uart_bridge"];
@@ -35,9 +35,6 @@ const INLINE: [(&str, &str); 4] = pages!["inline" "inline_axis" "pulse_counter" 
 
 /// Datasheets of machines with a shaper of half sums.
 const CASCADE: [(&str, &str); 1] = pages!["cascade"];
-
-/// Datasheets of blocks that no machine has.
-const ALONE: [(&str, &str); 1] = pages!["absolute_encoder"];
 
 /// Hardware of a machine in addition to the shapers of its top module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -100,8 +97,7 @@ pub fn of_block(name: &str, has_registers: bool) -> Vec<(String, String)> {
         .chain(&SPI_LINK))
     .chain(&BUS)
     .chain(&INLINE)
-    .chain(&CASCADE)
-    .chain(&ALONE);
+    .chain(&CASCADE);
     let is_bus = |page: &str| page == "registers" || BUS.iter().any(|(bus, _)| *bus == page);
     let mut pages: Vec<_> = all
         .filter(|(page, _)| *page == name || (has_registers && is_bus(page)))
@@ -169,8 +165,8 @@ mod tests {
         for (built, pages) in [
             (BuiltBlocks::Shapers, 1),
             (BuiltBlocks::Components, 6),
-            (BuiltBlocks::Stage, 18),
-            (BuiltBlocks::LinkedStage, 19),
+            (BuiltBlocks::Stage, 19),
+            (BuiltBlocks::LinkedStage, 20),
             (BuiltBlocks::Inline, 5),
         ] {
             let files = files(built, None, false);
