@@ -4,7 +4,7 @@
 use crate::warning::Warning;
 use posicast_blocks::absolute_encoder::AbsoluteProtocol;
 use posicast_machine::control::{LostSign, lost_sign};
-use posicast_machine::machine_file::{AxisSection, ClockSection, LimitsSection, Machine};
+use posicast_machine::machine_file::{AxisSection, CABLE_DELAY_S_PER_M, ClockSection, LimitsSection, Machine};
 use posicast_shaper::unit::trimmed;
 
 /// A following error of fewer counts than this is most likely meant in another unit.
@@ -13,8 +13,7 @@ const LEAST_COUNTS: f64 = 4.0;
 /// Largest product of a line's bit rate and its length, bit·m/s: the guideline of TIA-422-B, 10 Mbit/s over 12 m. A clock of f Hz has
 /// 2 f bits per s.
 const BITS_BY_METRES: f64 = 120e6;
-/// Delay of a line there and back, s per m, and that of drivers and encoder, s.
-const DELAY_S_PER_M: f64 = 10e-9;
+/// Delay of drivers and encoder, s.
 const DRIVERS_S: f64 = 300e-9;
 
 /// A guard, whether a file has it, and the possible consequences without it.
@@ -80,13 +79,13 @@ pub(crate) fn long_cables(machine: &Machine) -> Vec<Warning> {
 }
 
 fn long_cable(axis: &AxisSection, clock: &ClockSection) -> Option<String> {
-    let absolute = axis.encoder.as_ref()?.absolute?;
+    let absolute = axis.absolute_encoder()?;
     let cable_m = absolute.cable_m?;
     let line_hz = absolute.times.line_hz;
     let of_bandwidth = BITS_BY_METRES / (2.0 * line_hz);
     // A bit of SSI is taken three clocks before the next edge, whatever the line delays.
     let of_delay = match absolute.protocol {
-        AbsoluteProtocol::Ssi => (1.0 / line_hz - 3.0 / clock.frequency_hz - DRIVERS_S) / DELAY_S_PER_M,
+        AbsoluteProtocol::Ssi => (1.0 / line_hz - 3.0 / clock.frequency_hz - DRIVERS_S) / CABLE_DELAY_S_PER_M,
         AbsoluteProtocol::BissC => f64::INFINITY,
     };
     let (most_m, why) = if of_delay < of_bandwidth {

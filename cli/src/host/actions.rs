@@ -97,10 +97,7 @@ pub(super) fn home<'m>(
     open: impl FnOnce() -> Result<Port<'m>, Failure>,
 ) -> Result<(), Failure> {
     let index = axis_of(machine, axis, path)?;
-    if machine.axes[index]
-        .encoder
-        .is_some_and(|encoder| encoder.absolute.is_some())
-    {
+    if machine.axes[index].absolute_encoder().is_some() {
         return Err(
             Failure::input(format!("{}: axis {axis} has an absolute encoder", path.display())).with_help(
                 "it needs no homing: `status` shows its position; correct its zero by `offset` of [axis.encoder]",

@@ -1,6 +1,6 @@
 //! The machine of the campaign with absolute encoders, and the faults of such a machine.
 //!
-//! An axis alternates between the protocols: the first one has SSI, the second one BiSS-C. There is no scale beside them.
+//! X has an encoder with SSI, Y one with BiSS-C, and neither has a scale.
 
 use posicast_blocks::absolute_encoder::{AbsoluteFrame, AbsoluteProtocol, AbsoluteTimesInSeconds, FrameCheck};
 use posicast_blocks::axis::Cause;

@@ -29,16 +29,13 @@
 //! assert_eq!((block.outputs().count, block.outputs().velocity), (18, 20 << 16));
 //! ```
 
+use super::pulse_counter::SmoothedVelocity;
 use super::{Moore, OutputKind, clocked_block, ports, quiet_at_rest, show_each};
 
 /// Clocks from `reading_valid` to the new `count` and `velocity`.
 pub const FEEDBACK_CLOCKS: u32 = 2;
 /// Largest change of a reading that `velocity` shows, in counts.
 pub const MOST_CHANGE: i32 = 32_767;
-/// Fraction bits of the smoothed velocity beyond those of Q16.16.
-const SMOOTHING_BITS: u32 = 3;
-/// Offset of the smoothed velocity, so that truncating its extra bits rounds.
-const ROUNDING: i64 = (1 << (SMOOTHING_BITS - 1)) - 1;
 
 ports! {
     absolute_feedback_ports;
@@ -117,8 +114,7 @@ pub struct AbsoluteFeedback {
     pending: bool,
     /// Whether there was a preset in the clock before.
     presets: bool,
-    /// Smoothed velocity, Q16.19, plus [`ROUNDING`].
-    smoothed: i64,
+    smoothed: SmoothedVelocity,
     count: i32,
     placed: bool,
     origin: i32,
@@ -144,7 +140,7 @@ impl AbsoluteFeedback {
             is_new: false,
             pending: false,
             presets: false,
-            smoothed: ROUNDING,
+            smoothed: SmoothedVelocity::REST,
             count: 0,
             placed: false,
             origin: 0,
@@ -162,7 +158,7 @@ impl AbsoluteFeedback {
             placed: self.placed,
             origin: self.origin,
             position: self.count.wrapping_sub(self.origin),
-            velocity: (self.smoothed >> SMOOTHING_BITS) as i32,
+            velocity: self.smoothed.value(),
             velocity_valid: self.valid,
             velocity_missed: self.missed,
         }
@@ -205,7 +201,8 @@ impl AbsoluteFeedback {
         self.missed |= inputs.tick && self.pending && !self.is_new && inputs.reading_known;
         self.pending = inputs.tick || (self.pending && !self.is_new);
         if self.is_new {
-            self.smooth(signed(self.change), inputs.smoothing & 3);
+            let change = signed(self.change).clamp(-MOST_CHANGE, MOST_CHANGE);
+            self.smoothed.close(change << 16, inputs.smoothing);
         }
 
         self.steady = self.is_placed && (self.steady || inputs.tick);
@@ -226,14 +223,6 @@ impl AbsoluteFeedback {
             self.last = inputs.reading;
         }
         self.is_placed = inputs.reading_known && (self.is_placed || inputs.reading_valid);
-    }
-
-    /// `smoothed += (change − smoothed) · 2^−k`, rounded half up.
-    fn smooth(&mut self, change: i32, k: u8) {
-        let change = i64::from(change.clamp(-MOST_CHANGE, MOST_CHANGE));
-        let target = (change << (16 + SMOOTHING_BITS)) + ROUNDING;
-        let difference = target - self.smoothed;
-        self.smoothed += (((2 * difference) >> k) + 1) >> 1;
     }
 }
 

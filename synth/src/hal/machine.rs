@@ -104,7 +104,7 @@ fn hal_axis<'a>(axis: &'a AxisSection, clock: &ClockSection, table: &TapTable) -
             .map(|error| error * per_si),
         delay_s: table.mean_delay_samples() / clock.sample_hz,
         index: axis.encoder.as_ref().is_some_and(|encoder| encoder.index),
-        absolute: axis.encoder.as_ref().is_some_and(|encoder| encoder.absolute.is_some()),
+        absolute: axis.absolute_encoder().is_some(),
         probe: axis.probe.map(|probe| HalProbe {
             velocity: probe.side.sign() * probe.slow_velocity * per_si,
             position: probe.position * per_si,

@@ -31,6 +31,7 @@ mod velocity;
 
 pub use ports::{FILTER_CLOCKS_MAX, INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, PORTS, ports};
 pub use velocity::SMOOTHING_BITS;
+pub(crate) use velocity::SmoothedVelocity;
 
 use self::decode::decode;
 pub(super) use self::lines::GlitchFilter;

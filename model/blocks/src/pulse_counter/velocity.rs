@@ -8,6 +8,34 @@ use crate::shaper::wrap;
 pub const SMOOTHING_BITS: u32 = 3;
 /// Offset of the smoothed velocity, so that truncating its extra bits rounds: it then settles exactly on its input.
 const ROUNDING: i64 = (1 << (SMOOTHING_BITS - 1)) - 1;
+
+/// A velocity behind a one-pole filter, Q16.19, plus [`ROUNDING`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct SmoothedVelocity(i64);
+
+impl SmoothedVelocity {
+    /// The velocity 0.
+    pub(crate) const REST: Self = Self(ROUNDING);
+
+    /// Its value, Q16.16.
+    pub(crate) fn value(self) -> i32 {
+        (self.0 >> SMOOTHING_BITS) as i32
+    }
+
+    /// Distance to this velocity.
+    fn distance(self, velocity: i32) -> i64 {
+        (i64::from(velocity) << SMOOTHING_BITS) + ROUNDING - self.0
+    }
+
+    fn is_negative(self) -> bool {
+        self.0 < 0
+    }
+
+    /// Closes 2^−k of the distance to this velocity, Q16.16, rounded half up.
+    pub(crate) fn close(&mut self, velocity: i32, k: u8) {
+        self.0 += (((2 * self.distance(velocity)) >> (k & 3)) + 1) >> 1;
+    }
+}
 /// Number of bits of the last edge's time stamp that are kept: at the next tick it is less than half of that range
 /// ago.
 const LAST_STAMP_BITS: u32 = 19;
@@ -47,8 +75,7 @@ pub(super) struct Velocity {
     steps: i32,
     elapsed: u32,
     pending: bool,
-    /// Smoothed velocity, Q16.19, plus [`ROUNDING`].
-    smoothed: i64,
+    smoothed: SmoothedVelocity,
     valid: bool,
     missed: bool,
 }
@@ -67,7 +94,7 @@ impl Default for Velocity {
             steps: 0,
             elapsed: 0,
             pending: false,
-            smoothed: ROUNDING,
+            smoothed: SmoothedVelocity::REST,
             valid: false,
             missed: false,
         }
@@ -88,7 +115,7 @@ impl Velocity {
     }
 
     pub(super) fn velocity(&self) -> i32 {
-        (self.smoothed >> SMOOTHING_BITS) as i32
+        self.smoothed.value()
     }
 
     pub(super) fn valid(&self) -> bool {
@@ -110,7 +137,7 @@ impl Velocity {
         if inputs.tick && self.pending && !resolved {
             self.missed = true;
         }
-        let negative = self.smoothed < 0;
+        let negative = self.smoothed.is_negative();
         if resolved {
             self.resolve(inputs);
             self.pending = false;
@@ -181,16 +208,12 @@ impl Velocity {
 
     /// Takes the quotient: `smoothed += (quotient − smoothed) · 2^−k`, rounded half up.
     fn resolve(&mut self, inputs: &Inputs) {
-        let target = (i64::from(inputs.quotient) << SMOOTHING_BITS) + ROUNDING;
-        let difference = target - self.smoothed;
-        let within_bound = (difference < 0) == (self.smoothed < 0);
+        let falls = self.smoothed.distance(inputs.quotient) < 0;
+        let within_bound = falls == self.smoothed.is_negative();
         match self.job {
-            Job::Halt => self.smoothed = ROUNDING,
+            Job::Halt => self.smoothed = SmoothedVelocity::REST,
             Job::Bound if within_bound => {}
-            Job::Measured | Job::Bound => {
-                let shift = u32::from(inputs.smoothing & 3);
-                self.smoothed += (((2 * difference) >> shift) + 1) >> 1;
-            }
+            Job::Measured | Job::Bound => self.smoothed.close(inputs.quotient, inputs.smoothing),
         }
     }
 }

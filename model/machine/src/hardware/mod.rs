@@ -157,7 +157,7 @@ impl<'a> Hardware<'a> {
 
 /// Whether only a stage operates the axis: it gives steps, and reads absolute encoders.
 fn needs_stage(axis: &AxisSection) -> bool {
-    axis.steps.is_some() || axis.encoder.is_some_and(|encoder| encoder.absolute.is_some())
+    axis.steps.is_some() || axis.absolute_encoder().is_some()
 }
 
 /// The axis to blame if a machine has an axis that only a stage operates, and another one with neither steps nor a whole loop: `None` if

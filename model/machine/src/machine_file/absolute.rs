@@ -36,6 +36,8 @@ pub(super) const DEFAULT_ANSWER_S: f64 = 20e-6;
 const JUMP_FACTOR: f64 = 2.0;
 /// And by so many counts more.
 const JUMP_COUNTS: f64 = 8.0;
+/// Delay of a line there and back, s per m of cable.
+pub const CABLE_DELAY_S_PER_M: f64 = 10e-9;
 /// Keys that only the protocol SSI has.
 const OF_SSI: [&str; 4] = ["coding", "leading_bits", "trailing_bits", "parity"];
 

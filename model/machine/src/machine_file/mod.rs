@@ -63,7 +63,7 @@ mod steps;
 mod table;
 mod trace;
 
-pub use absolute::AbsoluteSection;
+pub use absolute::{AbsoluteSection, CABLE_DELAY_S_PER_M};
 pub use capture::{CaptureEdge, CaptureSection};
 pub use compare::{CompareDirection, CompareSection};
 pub use controller::Controller;
@@ -304,6 +304,11 @@ impl AxisSection {
     pub fn has_loop(&self) -> bool {
         self.input.is_none()
             && (self.encoder.is_some() || self.pwm.is_some() || self.controller.is_some() || self.steps.is_some())
+    }
+
+    /// The absolute encoder, if the axis has one: the stage reads it, and the axis needs no homing.
+    pub fn absolute_encoder(&self) -> Option<&AbsoluteSection> {
+        self.encoder.as_ref()?.absolute.as_ref()
     }
 
     /// Counts per m or rad of the counter that the position loop runs on: the encoder's, or the scale's where that is

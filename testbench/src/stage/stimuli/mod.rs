@@ -344,12 +344,12 @@ impl StageRandom {
                 continue;
             }
             let fails = !self.mood.scene && self.one_in(ENCODER_FAULT_CLOCKS);
-            let (fault, ticks) = (self.pick(&EncoderFault::ALL), self.pick(&ENCODER_FAULT_TICKS));
+            let fault = fails.then(|| (self.pick(&EncoderFault::ALL), self.pick(&ENCODER_FAULT_TICKS)));
             let count = i64::from(self.axes[at].count);
             let Some(of) = &mut self.axes[at].absolute else {
                 continue;
             };
-            if fails {
+            if let Some((fault, ticks)) = fault {
                 of.fault_clocks = ticks * self.tick_clocks;
                 of.encoder.fault = fault;
             }

@@ -9,15 +9,13 @@
 //! | frame | leading bits, position, trailing bits, parity | start bit, 0, position, nError, nWarning, inverted CRC |
 //! | after it | low until the monoflop has run out | low until the time-out |
 
-use crate::machine_file::{AbsoluteSection, ClockSection};
+use crate::machine_file::{AbsoluteSection, CABLE_DELAY_S_PER_M, ClockSection};
 use posicast_blocks::absolute_encoder::{AbsoluteFrame, AbsoluteProtocol, FrameCheck};
 
 /// The encoder rests again after this share of the pause that the machine file states.
 const REST: f64 = 0.75;
 /// It takes this share of the longest answer to compute its position.
 const COMPUTES: f64 = 0.5;
-/// Delay of the line and back, s per m of cable.
-const DELAY_S_PER_M: f64 = 10e-9;
 /// The history of the line holds this many clocks.
 const MOST_DELAY_CLOCKS: u32 = 63;
 
@@ -73,7 +71,7 @@ enum State {
 impl AbsoluteEncoder {
     pub(super) fn new(section: &AbsoluteSection, invert: bool, clock: &ClockSection) -> Self {
         let clocks = |seconds: f64| (seconds * clock.frequency_hz) as u64;
-        let delay = section.cable_m.unwrap_or_default() * DELAY_S_PER_M * clock.frequency_hz;
+        let delay = section.cable_m.unwrap_or_default() * CABLE_DELAY_S_PER_M * clock.frequency_hz;
         Self {
             protocol: section.protocol,
             frame: section.frame,
