@@ -2,7 +2,7 @@
 """What LinuxCNC does with a posicast stage: scripts/linuxcnc makes this its [DISPLAY].
 
 It homes the axes, runs a program with the machine's shapers and without, and then pulls one thing after the other out. With `steps` it does
-so with the machine of steps.toml, which is homed by probes. Every line that it prints is a check that held, or a figure; it ends with
+so with the machine of steps.toml, which is homed by probes and has a touch probe. Every line that it prints is a check that held, or a figure; it ends with
 `done`, or with what did not hold.
 """
 import json
@@ -68,6 +68,8 @@ def poll():
 
 def until(holds, what):
     end = time.monotonic() + PATIENCE_S
+    # What was polled before the command that is waited for says nothing.
+    poll()
     while not holds():
         require(time.monotonic() < end, what)
         time.sleep(0.005)
@@ -202,10 +204,25 @@ def encoder_fault(stage):
     check(True, "encoder fault: the machine is homed again")
 
 
+def standing(stage):
+    """Position of x once it stands, in m: LinuxCNC calls a move done while shaper and load are still within its tolerance."""
+
+    def place():
+        return stage("state")["axes"][0]["position"]
+
+    def stands():
+        before = place()
+        time.sleep(0.2)
+        return abs(place() - before) < STEP_M / 25
+
+    until(stands, "x stands")
+    return place()
+
+
 def stall(stage):
     # Near both contacts: homing approaches them slowly.
     move("G0 X1 Y57")
-    before = stage("state")["axes"][0]["position"]
+    before = standing(stage)
     move("G1 F3000 X10", wait=False)
     until(lambda: status.current_vel > 5, "the move begins")
     stage("jam x")
@@ -216,9 +233,35 @@ def stall(stage):
     switch_on()
     home()
     move("G0 X1 Y57")
-    after = stage("state")["axes"][0]["position"]
+    after = standing(stage)
     # Each of the two homings is true to a step.
     check(abs(after - before) <= 2 * STEP_M, f"stall: homed again, x is where it was: {(after - before) * 1e6:.1f} um")
+
+
+def touch_probe(stage):
+    """G38.2 with a touch on the way, which the test makes, and without one."""
+
+    def place():
+        return float(pin("posicast.0.pos-fb"))
+
+    move("G0 X1 Y57")
+    edges = int(pin("posicast.probe-edges"))
+    move("G38.2 F300 X20", wait=False)
+    until(lambda: status.current_vel > 4, "the probing move begins")
+    before = place()
+    stage("set capture_line 1")
+    until(lambda: int(pin("posicast.probe-edges")) == edges + 1, "the touch is seen")
+    after = place()
+    command.wait_complete(PATIENCE_S)
+    until(idle, "the probing move ends")
+    probed, stands = float(pin("posicast.0.probed")), place()
+    check(before <= probed <= after, f"touch probe: the hardware's position is on the way: {before:.4f} <= {probed:.4f} <= {after:.4f} mm")
+    check(status.probe_tripped and probed < stands < probed + 0.5, f"touch probe: LinuxCNC stops {stands - probed:.4f} mm behind it")
+    stage("set capture_line 0")
+    until(lambda: pin("posicast.probe-input") == "FALSE", "the probe is free")
+    said.clear()
+    move("G38.2 F600 X8", wait=False)
+    shown("without making contact", "touch probe")
 
 
 def servo_thread_stops(stage):
@@ -279,6 +322,7 @@ def machine_with_steps(stage, shaped):
     said.clear()
     emergency_stop(stage)
     stall(stage)
+    touch_probe(stage)
     link_breaks(stage)
 
 

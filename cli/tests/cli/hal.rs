@@ -85,6 +85,22 @@ fn cli_hal_writes_the_machine_in_linuxcnc_s_units() {
     }
 }
 
+/// G38 moves to the touch: `[capture]` is LinuxCNC's probe, and a machine without one leaves that pin alone.
+#[test]
+fn cli_hal_wires_the_touch_probe_of_a_stage_that_captures() {
+    let folder = tempfile::tempdir().unwrap();
+    for (machine, name, has_probe) in [
+        ("line-scan.toml", "line_scan", false),
+        ("measuring-arm.toml", "measuring_arm", true),
+    ] {
+        let package = folder.path().join(name);
+        generated(&example(machine), &package);
+        let hal = std::fs::read_to_string(package.join("hal").join(format!("{name}.hal"))).unwrap();
+        let wire = "net probe posicast.probe-input => motion.probe-input";
+        assert_eq!(hal.lines().any(|line| line == wire), has_probe, "{hal}");
+    }
+}
+
 #[test]
 fn cli_hal_without_a_stage_writes_the_tables_alone() {
     let folder = tempfile::tempdir().unwrap();

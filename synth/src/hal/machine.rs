@@ -67,6 +67,7 @@ impl<'a> HalMachine<'a> {
             servo_hz,
             axes: axes.collect(),
             has_stage,
+            captures: machine.capture.is_some(),
             tables: servo_tables(machine, servo_hz)?,
         })
     }

@@ -40,6 +40,8 @@ pub struct HalMachine<'a> {
     pub axes: Vec<HalAxis<'a>>,
     /// Whether there is a stage.
     pub has_stage: bool,
+    /// Whether the stage captures positions, for a touch probe.
+    pub captures: bool,
     /// The tap tables at the servo rate.
     pub tables: ShaperTables,
 }

@@ -32,6 +32,9 @@ setp posicast.watchdog-ms [POSICAST]WATCHDOG_MS
 ",
         machine.name
     );
+    if machine.captures {
+        text.push_str("\n# The touch probe at the stage's capture_line: G38.\nnet probe posicast.probe-input => motion.probe-input\n");
+    }
     for (number, axis) in machine.axes.iter().enumerate() {
         let name = axis.name;
         let wires = [

@@ -27,6 +27,9 @@
 #include "posicast_path.h"
 #include "posicast_stream.h"
 #include "posicast_wait.h"
+#ifdef POSICAST_STAGE_CAPTURE_STATE_REG
+#include "posicast_capture.h"
+#endif
 
 MODULE_AUTHOR("posicast");
 MODULE_DESCRIPTION("a posicast stage");
@@ -44,6 +47,8 @@ RTAPI_MP_STRING(stage, "the stage's registers: uio:/dev/uio0, or unix:PATH of a 
 #define OFF_TICKS  20000u
 /* A bit of `cause` beyond those of the stage. */
 #define CAUSE_LINK 0x80000000u
+
+#define LINK_IS_BROKEN "the link to the stage is broken; its watchdog stops the axes. Load the component anew"
 
 typedef enum { OFF, CLEAR, SWITCH_ON, FOLLOW, FAULT } phase;
 
@@ -66,6 +71,10 @@ static posicast_snapshot now;
 static phase at_phase;
 static uint32_t causes[POSICAST_AXES_MAX], status[POSICAST_AXES_MAX];
 static uint32_t period_ticks, periods_in_phase, tick_before, ahead_ticks, watchdog_ms;
+#ifdef POSICAST_STAGE_CAPTURE_STATE_REG
+/* Whether the line of [capture] is low while the probe touches. */
+static int touches_low;
+#endif
 
 static void enter(phase next)
 {
@@ -90,13 +99,13 @@ static void set_enable(int on)
     }
 }
 
-/* LinuxCNC shows errors of this level to the operator. */
+/* LinuxCNC shows errors of this level to the operator. A link that breaks in the middle of a period looks like many another failure. */
 static void fail(const char *why)
 {
     uint32_t axis;
 
     if (at_phase != FAULT)
-        rtapi_print_msg(RTAPI_MSG_ERR, "posicast: %s\n", why);
+        rtapi_print_msg(RTAPI_MSG_ERR, "posicast: %s\n", posicast_link_is_broken() ? LINK_IS_BROKEN : why);
     for (axis = 0; axis < hardware.axes && at_phase != FAULT; axis++) {
         /* An axis may have stopped since posicast.read. */
         if (!posicast_link_is_broken())
@@ -173,6 +182,40 @@ static void follow_index(uint32_t axis)
 }
 #endif
 
+#ifdef POSICAST_STAGE_CAPTURE_STATE_REG
+static int captures_falls_alone(void)
+{
+    const uint32_t falls = POSICAST_STAGE_CAPTURE_CONTROL_CAPTURE_FALLS_MSK, rises = POSICAST_STAGE_CAPTURE_CONTROL_CAPTURE_RISES_MSK;
+
+    return ((uint32_t)IORD_POSICAST_STAGE_CAPTURE_CONTROL(0) & (falls | rises)) == falls;
+}
+
+/*
+ * The probe touches while its line has the level that an edge of [capture] leads to. A touch that is over within a servo period is shown
+ * for one.
+ */
+static void follow_probe(void)
+{
+    const uint32_t state_now = (uint32_t)IORD_POSICAST_STAGE_CAPTURE_STATE(0);
+    const int is_high = (state_now & POSICAST_STAGE_CAPTURE_STATE_CAPTURE_LEVEL_MSK) != 0;
+    int touched = is_high != touches_low && state_now & POSICAST_STAGE_CAPTURE_STATE_CAPTURE_LEVEL_KNOWN_MSK;
+    uint32_t left = FIELD(state_now, POSICAST_STAGE_CAPTURE_STATE_CAPTURE_ENTRIES);
+    posicast_edge edge;
+
+    for (; left > 0 && posicast_take_edge(&hardware, &edge) == POSICAST_OK; left--) {
+        uint32_t axis;
+
+        if (edge.rising == touches_low)
+            continue;
+        touched = 1;
+        *hal->probe_edges += 1;
+        for (axis = 0; axis < hardware.axes; axis++)
+            *hal->axis[axis].probed = (edge.positions[axis] + axes[axis].shift) / posicast_hal_counts[axis];
+    }
+    *hal->probe_input = touched;
+}
+#endif
+
 static void show(uint32_t axis)
 {
     posicast_axis_pins *pin = &hal->axis[axis];
@@ -219,8 +262,12 @@ static void read_stage(void *argument, long period)
                 limit_travel(axis);
         }
     }
+#ifdef POSICAST_STAGE_CAPTURE_STATE_REG
+    if (!posicast_link_is_broken())
+        follow_probe();
+#endif
     if (posicast_link_is_broken() && at_phase != FAULT)
-        fail("the link to the stage is broken; its watchdog stops the axes. Load the component anew");
+        fail(LINK_IS_BROKEN);
     for (axis = 0; axis < hardware.axes; axis++)
         show(axis);
     *hal->ok = ok && !posicast_link_is_broken();
@@ -418,6 +465,10 @@ static int load(void)
         (uint32_t)(1000.0 / POSICAST_HAL_MACHINE.tick_hz *
                    FIELD(IORD_POSICAST_AXIS_WATCHDOG(0, 0), POSICAST_AXIS_WATCHDOG_WATCHDOG_TICKS));
     period_ticks = (uint32_t)(POSICAST_HAL_MACHINE.tick_hz * POSICAST_HAL_SERVO_NS * 1e-9 + 0.5);
+#ifdef POSICAST_STAGE_CAPTURE_STATE_REG
+    touches_low = captures_falls_alone();
+    posicast_capture_begin(&hardware);
+#endif
     /* In the servo thread nothing waits for time to pass. */
     hardware.pause = NULL;
     status_of = posicast_make_pins(hal, component, hardware.axes);

@@ -31,6 +31,10 @@ int posicast_make_pins(posicast_pins *pins, int component, uint32_t axes)
             status_of = hal_pin_u32_newf(HAL_OUT, &pin->cause, component, "posicast.%u.cause", axis);
         if (status_of == 0)
             status_of = hal_pin_u32_newf(HAL_IN, &pin->shaper, component, "posicast.%u.unshaped", axis);
+#ifdef POSICAST_STAGE_CAPTURE_STATE_REG
+        if (status_of == 0)
+            status_of = hal_pin_float_newf(HAL_OUT, &pin->probed, component, "posicast.%u.probed", axis);
+#endif
     }
     if (status_of == 0)
         status_of = hal_pin_bit_newf(HAL_OUT, &pins->ok, component, "posicast.ok");
@@ -42,6 +46,12 @@ int posicast_make_pins(posicast_pins *pins, int component, uint32_t axes)
         status_of = hal_pin_u32_newf(HAL_OUT, &pins->late_ticks, component, "posicast.late-ticks");
     if (status_of == 0)
         status_of = hal_pin_u32_newf(HAL_OUT, &pins->accesses, component, "posicast.accesses");
+#ifdef POSICAST_STAGE_CAPTURE_STATE_REG
+    if (status_of == 0)
+        status_of = hal_pin_bit_newf(HAL_OUT, &pins->probe_input, component, "posicast.probe-input");
+    if (status_of == 0)
+        status_of = hal_pin_u32_newf(HAL_OUT, &pins->probe_edges, component, "posicast.probe-edges");
+#endif
     if (status_of == 0)
         status_of = hal_param_u32_newf(HAL_RW, &pins->watchdog_ms, component, "posicast.watchdog-ms");
     return status_of;

@@ -15,11 +15,16 @@ typedef struct {
     hal_float_t *pos_cmd, *vel_cmd, *pos_fb, *vel_fb, *following_error;
     hal_bit_t *enable, *fault, *index_enable, *home, *limit_plus, *limit_minus;
     hal_u32_t *cause, *shaper;
+    /* Of a stage with [capture]. */
+    hal_float_t *probed;
 } posicast_axis_pins;
 
 typedef struct {
     posicast_axis_pins axis[POSICAST_AXES_MAX];
     hal_bit_t *ok;
+    /* Of a stage with [capture]. */
+    hal_bit_t *probe_input;
+    hal_u32_t *probe_edges;
     hal_u32_t *phase, *level, *late_ticks, *accesses;
     hal_u32_t watchdog_ms;
 } posicast_pins;
