@@ -73,8 +73,11 @@ fn first_on(block: &StageBlock, switches: &[(String, u64)], modules: &[Module]) 
 
 #[test]
 fn every_pin_is_off_from_power_up_on() {
-    // Four pins of the bridge, drive and brake of two axes; drive, brake and two lines of three axes with steps.
-    for (config, count) in library_sizes().unwrap().stages.iter().zip([13, 13]) {
+    // Four pins of the bridge, drive and brake of two axes; drive, brake and two lines of three axes with steps; as the first.
+    let sizes = library_sizes().unwrap();
+    let counts = [13, 13, 13];
+    assert_eq!(sizes.stages.len(), counts.len());
+    for (config, count) in sizes.stages.iter().zip(counts) {
         let block = StageBlock::new(config, "stage").unwrap();
         let modules = block.modules().unwrap();
         let outputs: Vec<String> = block.model(0).ports().iter().map(|port| port.name.clone()).collect();

@@ -1,13 +1,16 @@
 //! Every hardware block at one size, for the rungs of the verification ladder that take each block once.
 //!
 //! The rows are those of `posicast verify` for a machine of two complete axes: the shapers in their top, each block
-//! alone, the blocks that connect others, each component through its bus, its register bank alone, and two stages. Sizes
+//! alone, the blocks that connect others, each component through its bus, its register bank alone, and three stages. Sizes
 //! are those of the example stage where they matter for coverage; the whole stages have short ticks, so that a run
 //! contains many.
 //!
 //! The kinds of blocks are those of the registry; a test of the command line checks that it contains every name of
 //! `verify`.
 
+use posicast_blocks::absolute_encoder::{
+    AbsoluteEncoderConfig, AbsoluteFrame, AbsoluteLimits, AbsoluteProtocol, AbsoluteTimes, FrameCheck,
+};
 use posicast_blocks::axis_shaper::AxisShaperConfig;
 use posicast_blocks::bus_component::BridgedBus;
 use posicast_blocks::component::Component;
@@ -19,7 +22,8 @@ use posicast_blocks::shaper::ShaperConfig;
 use posicast_blocks::sliding_mode::{Law, Settings};
 use posicast_blocks::stage::Supervision;
 use posicast_blocks::stage::{
-    Follower, StageAxis, StageCapture, StageCompare, StageConfig, StageErrorTable, StageLoop, StageProbe, StageScale,
+    Follower, StageAbsolute, StageAxis, StageCapture, StageCompare, StageConfig, StageErrorTable, StageLoop,
+    StageProbe, StageScale,
 };
 use posicast_blocks::step_generator::{StepGeneratorConfig, StepLinesActiveLow, StepMode, StepTimes};
 use posicast_blocks::trace::TraceConfig;
@@ -119,7 +123,7 @@ pub fn library_sizes() -> Result<BenchSizes, Error> {
             on_bus(BridgedBus::AxiLite),
             on_bus(BridgedBus::Wishbone { pipelined: true }),
         ],
-        stages: vec![stage()?, stage_with_steps()?],
+        stages: vec![stage()?, stage_with_steps()?, stage_with_absolute_encoders()?],
         inline: Some(crate::inline_shaper::example()?),
     })
 }
@@ -151,37 +155,13 @@ const COMPARE: StageCompare = StageCompare {
 
 /// Two axes: one with trace memory and test signals, one that is controlled by a linear scale.
 pub(crate) fn stage() -> Result<StageConfig, Error> {
-    let axis = |name: &str| -> Result<StageAxis, Error> {
-        Ok(StageAxis {
-            name: name.to_owned(),
-            shaper: shaper([2, 3, 5, 6])?.for_motion(MOTION).map_err(refused)?,
-            modulo: false,
-            follower: Follower::Loop(Box::new(StageLoop {
-                settings: Settings::default(),
-                law: Law::SlidingMode,
-                pwm: PwmConfig::new(ActiveLow::default(), 2, 3).map_err(refused)?,
-                pwm_mode: BridgeMode::Unipolar,
-                pwm_period_clocks: STAGE_PERIOD_CLOCKS,
-                encoder_filter_clocks: 2,
-                encoder_invert: false,
-                absolute: None,
-            })),
-            supervision: SUPERVISION,
-            probe: None,
-            corrects: false,
-            compare: None,
-            scale: None,
-            error_table: None,
-            bring_up: None,
-        })
-    };
     let x = StageAxis {
         error_table: Some(StageErrorTable {
             table: ErrorTableBlock::of_size(9, 6)?,
             on_measured: false,
         }),
         bring_up: Some(TraceConfig::new(256).map_err(refused)?),
-        ..axis("x")?
+        ..looped("x", None)?
     };
     let y = StageAxis {
         scale: Some(StageScale {
@@ -189,15 +169,70 @@ pub(crate) fn stage() -> Result<StageConfig, Error> {
             closes_loop: true,
             invert: false,
         }),
-        ..axis("y")?
+        ..looped("y", None)?
     };
+    with_shortest_tick(vec![x, y], None)
+}
+
+/// Two axes whose positions come over BiSS-C and over SSI; a line captures both.
+pub(crate) fn stage_with_absolute_encoders() -> Result<StageConfig, Error> {
+    let limits = AbsoluteLimits {
+        largest_jump: 200,
+        tolerated: 2,
+    };
+    let times = |pause_clocks, answer_clocks| AbsoluteTimes {
+        half_period_clocks: 4,
+        pause_clocks,
+        answer_clocks,
+    };
+    let gray = AbsoluteFrame {
+        gray: true,
+        check: FrameCheck::EvenParity,
+        ..AbsoluteFrame::ssi(14)
+    };
+    let encoder = |protocol, frame, times| -> Result<Option<StageAbsolute>, Error> {
+        let encoder = AbsoluteEncoderConfig::new(protocol, frame, times, limits).map_err(refused)?;
+        Ok(Some(StageAbsolute { encoder, offset: 100 }))
+    };
+    let biss = encoder(AbsoluteProtocol::BissC, AbsoluteFrame::biss_c(16), times(64, 48))?;
+    let ssi = encoder(AbsoluteProtocol::Ssi, gray, times(32, 0))?;
+    with_shortest_tick(vec![looped("x", biss)?, looped("y", ssi)?], Some(CAPTURE))
+}
+
+/// An axis with a controller, and with this absolute encoder if there is one.
+fn looped(name: &str, absolute: Option<StageAbsolute>) -> Result<StageAxis, Error> {
+    Ok(StageAxis {
+        name: name.to_owned(),
+        shaper: shaper([2, 3, 5, 6])?.for_motion(MOTION).map_err(refused)?,
+        modulo: false,
+        follower: Follower::Loop(Box::new(StageLoop {
+            settings: Settings::default(),
+            law: Law::SlidingMode,
+            pwm: PwmConfig::new(ActiveLow::default(), 2, 3).map_err(refused)?,
+            pwm_mode: BridgeMode::Unipolar,
+            pwm_period_clocks: STAGE_PERIOD_CLOCKS,
+            encoder_filter_clocks: 2,
+            encoder_invert: false,
+            absolute,
+        })),
+        supervision: SUPERVISION,
+        probe: None,
+        corrects: false,
+        compare: None,
+        scale: None,
+        error_table: None,
+        bring_up: None,
+    })
+}
+
+/// A stage of axes with controllers, whose tick is the shortest that is long enough for the schedule, in whole periods of the PWM.
+fn with_shortest_tick(axes: Vec<StageAxis>, capture: Option<StageCapture>) -> Result<StageConfig, Error> {
     let mut stage = StageConfig {
         tick: DividerConfig::new(TICK_CLOCKS).map_err(refused)?,
-        axes: vec![x, y],
-        capture: None,
+        axes,
+        capture,
         machine_crc: None,
     };
-    // This is the shortest tick that is long enough for the schedule, in whole periods.
     let periods = stage.timing().duty_clocks() / STAGE_PERIOD_CLOCKS + 1;
     stage.tick = DividerConfig::new(u64::from(periods * STAGE_PERIOD_CLOCKS)).map_err(refused)?;
     Ok(stage)

@@ -7,7 +7,7 @@ use posicast_hdl::emit::Module;
 
 use crate::Error;
 use crate::axis;
-use crate::blocks::library::{stage, stage_with_steps};
+use crate::blocks::library::{stage, stage_with_absolute_encoders, stage_with_steps};
 use crate::formal::{INDUCTION, Task, refused};
 use crate::step_generator;
 
@@ -24,6 +24,15 @@ const LEFT_OUT: [&str; 9] = [
     "excitation",
     "trace",
 ];
+/// Those of an axis with an absolute encoder.
+const LEFT_OUT_BESIDE_ABSOLUTE: [&str; 6] = [
+    "segments",
+    "motion_shaper",
+    "sliding_mode",
+    "absolute_encoder_biss_c",
+    "absolute_encoder_ssi",
+    "absolute_feedback",
+];
 /// Those of an axis with steps.
 const LEFT_OUT_BESIDE_STEPS: [&str; 6] = [
     "segments",
@@ -35,10 +44,11 @@ const LEFT_OUT_BESIDE_STEPS: [&str; 6] = [
 ];
 
 /// The axes of the stages that the other rungs of verification use. Two have controllers: one with the blocks for bring-up, one with a
-/// linear scale. Three have steps, one for each mode of the lines.
+/// linear scale. Three have steps, one for each mode of the lines. Two have absolute encoders.
 pub(crate) fn tasks() -> Result<Vec<Task>, Error> {
     let mut tasks = of_stage(&stage()?, &LEFT_OUT)?;
     tasks.extend(of_stage(&stage_with_steps()?, &LEFT_OUT_BESIDE_STEPS)?);
+    tasks.extend(of_stage(&stage_with_absolute_encoders()?, &LEFT_OUT_BESIDE_ABSOLUTE)?);
     Ok(tasks)
 }
 
@@ -62,7 +72,12 @@ fn task(axis: &StageAxis, modules: &[Module]) -> Result<Task, Error> {
     let at = at.ok_or_else(|| refused(format!("the stage has no `{name}`")))?;
     let filter_clocks = axis.supervision.filter_clocks;
     let filter = [("FILTER_CLOCKS", format!("7'd{filter_clocks}"))];
-    let size = format!("axis {}, lines filtered for {filter_clocks} clocks", axis.name);
+    let encoder = if axis.absolute().is_some() {
+        " with an absolute encoder"
+    } else {
+        ""
+    };
+    let size = format!("axis {}{encoder}, lines filtered for {filter_clocks} clocks", axis.name);
     let block = (modules[..=at].to_vec(), modules[at].ports.clone());
     let task = |name, size: &str| Task::new(name, size, INDUCTION, block).macros(&axis::proofs::macros());
     Ok(match &axis.follower {
