@@ -4,6 +4,7 @@
 //! - [`stage_run`] switches a stage on, moves it along moves and contours, and measures.
 //! - [`fault_campaign`] injects every fault into a stage with its machine, at random clocks of a move.
 //! - [`inline_bench`] is an inline shaper with a controller at its pins, and [`inline_run`] measures what it does with its machine.
+//! - [`touching`] puts a touch probe at a stage's capture line.
 //! - [`linked_bench`] puts a stage with its simulated machine, or an inline shaper, behind a serial line.
 
 pub mod fault_campaign;
@@ -12,3 +13,4 @@ pub mod inline_run;
 pub mod linked_bench;
 pub mod stage_bench;
 pub mod stage_run;
+pub mod touching;

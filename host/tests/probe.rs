@@ -4,53 +4,30 @@
 use crate::home::{LINK, bench};
 use crate::stage::stage;
 use posicast_blocks::linked_stage::address_limit;
-use posicast_closed_loop::linked_bench::{LinkedBench, Registered};
-use posicast_closed_loop::stage_bench::StageBench;
+use posicast_closed_loop::linked_bench::LinkedBench;
+use posicast_closed_loop::touching::{Contact, Touching};
 use posicast_host::{HostMove, HostedStage, Link, LinkOptions};
 use posicast_machine::hardware::StageHardware;
 use posicast_machine::machine_file::{self, Machine};
 use posicast_machine::plant::axis::PlantOptions;
-use posicast_testbench::Error;
-
-/// Clocks after which the probe looks again where the axis is.
-const LOOK_CLOCKS: u64 = 10;
-
-/// A stage whose probe touches, with a low line, while X is at this count or beyond it.
-struct Probed {
-    bench: StageBench,
-    contact: i64,
-}
-
-impl Registered for Probed {
-    fn read_at(&mut self, address: u32) -> Result<u32, Error> {
-        self.bench.read_at(address)
-    }
-
-    fn write_at(&mut self, address: u32, data: u32) -> Result<(), Error> {
-        self.bench.write_at(address, data)
-    }
-
-    fn clocks(&mut self, mut clocks: u64) -> Result<(), Error> {
-        while clocks > 0 {
-            let touches = self.bench.plant(0).count() >= self.contact;
-            self.bench.set("capture_line", u64::from(!touches))?;
-            let some = clocks.min(LOOK_CLOCKS);
-            self.bench.clocks(some)?;
-            clocks -= some;
-        }
-        Ok(())
-    }
-}
 
 fn machine(more: &str) -> Machine {
     let text = include_str!("../../examples/xy-stage.toml");
     machine_file::parse("xy-stage.toml", &format!("{text}{more}")).unwrap()
 }
 
-fn open<'m>(machine: &'m Machine, stage: &'m StageHardware, contact: i64) -> HostedStage<'m, LinkedBench<Probed>> {
+/// The stage with a probe that touches, with a low line, while X is at this count or beyond it.
+fn open<'m>(machine: &'m Machine, stage: &'m StageHardware, count: i64) -> HostedStage<'m, LinkedBench<Touching>> {
+    let contact = Contact {
+        axis: 0,
+        count,
+        is_low: true,
+        // 20 mm/s at 1000 counts per mm and 50 MHz.
+        fastest: 4e-4,
+    };
     let bench = bench(machine, stage, &PlantOptions::default());
     let limit = address_limit(&stage.component);
-    let line = LinkedBench::new(Probed { bench, contact }, &LINK, &machine.clock, limit);
+    let line = LinkedBench::new(Touching::new(bench, contact), &LINK, &machine.clock, limit);
     HostedStage::open(Link::new(line, LinkOptions::default()), machine, stage).unwrap()
 }
 
@@ -70,7 +47,7 @@ fn a_probing_move_finds_where_the_probe_touched_and_says_how_far_it_went_on() {
     host.switch_on(&[0, 1], false).unwrap();
     host.move_axes(&[way(1, 0.001)]).unwrap();
     let probing = host.probe(way(0, 0.01)).unwrap();
-    // 20 mm/s are 0.02 counts per µs: filter and look of the test take less than two.
+    // 20 mm/s are 0.02 counts per µs: filter and look of the probe take less than two.
     assert!((probing.found.positions[0] - 3000).abs() <= 1, "{probing:?}");
     assert!((probing.found.positions[1] - 1000).abs() <= 2, "{probing:?}");
     assert!(

@@ -8,6 +8,7 @@ mod probing;
 mod pulses;
 mod report;
 mod step_lines;
+mod touches;
 pub(super) mod verdicts;
 
 use crate::bench::{self, Simulator};
@@ -70,6 +71,8 @@ pub(crate) struct ClosedLoop<'a> {
     probed: Vec<probing::Probed>,
     /// The axes that have a position compare.
     pulsed: Vec<pulses::Pulsed>,
+    /// The axes that a probe touched with, of a stage with a capture line.
+    touched: Vec<touches::Touched>,
 }
 
 /// Results of the circle of the first two axes.
@@ -176,6 +179,7 @@ impl<'a> Job<'a> {
         };
         let probed = probing::all(self.machine, &hardware, self.seed).map_err(refused)?;
         let pulsed = pulses::all(self.machine, &hardware, self.seed).map_err(refused)?;
+        let touched = touches::all(self.machine, &hardware, self.seed).map_err(refused)?;
         let lost = || Failure::input("a run of the closed loop is missing");
         let [shaped, unshaped, slower, faster] = moves.try_into().map_err(|_| lost())?;
         let mut contoured = contours.into_iter();
@@ -220,6 +224,7 @@ impl<'a> Job<'a> {
             contours,
             probed,
             pulsed,
+            touched,
         })
     }
 

@@ -21,7 +21,7 @@ impl ClosedLoop<'_> {
         checks.extend(self.kept_steps());
         checks.extend(self.probed());
         checks.extend(self.pulsed());
-        checks.extend(self.captured());
+        checks.extend(self.touched());
         checks.extend(self.calmer());
         checks.extend(self.limited());
         checks.extend(self.led_to_true_positions());
@@ -30,14 +30,6 @@ impl ClosedLoop<'_> {
 
     fn moves(&self) -> [&Moved; 4] {
         [&self.shaped, &self.unshaped, &self.slower, &self.faster]
-    }
-
-    /// The simulated machine has no probe; there is no check without a capture.
-    fn captured(&self) -> Option<Check> {
-        self.machine.capture?;
-        let name = "the capture line takes positions";
-        let reason = "the simulated machine touches nothing; `posicast verify` plays edges at the block";
-        Some(Check::not_exercised(name, true, reason))
     }
 
     /// No motor may lose a step; there is no check if no axis has steps.
