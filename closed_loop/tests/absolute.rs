@@ -15,7 +15,8 @@ const TICK: u64 = 5000;
 const SSI: [(&str, &str); 3] = [
     (
         "kind = \"biss_c\"",
-        "kind = \"ssi\"\ncoding = \"gray\"\nparity = \"odd\"\nleading_bits = 1\ntrailing_bits = 2",
+        "kind = \"ssi\"\ncoding = \"gray\"\nparity = \"odd\"\nleading_bits = 1\ntrailing_bits = 2\nerror_bit = 1\n\
+         error_level = \"low\"",
     ),
     ("clock_hz = 5_000_000", "clock_hz = 1_000_000"),
     (
@@ -137,15 +138,16 @@ fn causes_after(bench: &mut StageBench, fault: AbsoluteFault, ticks: u64) -> u32
 
 #[test]
 fn tolerated_faults_move_nothing_and_one_more_switches_off() {
-    let machine = arm();
+    let (biss, ssi) = (arm(), with_ssi());
     let faults = [
-        (AbsoluteFault::Inverted(3), 0),
-        (AbsoluteFault::Stuck(true), 1),
-        (AbsoluteFault::Stuck(false), 2),
-        (AbsoluteFault::Error, 3),
+        (&biss, AbsoluteFault::Inverted(3), 0),
+        (&biss, AbsoluteFault::Stuck(true), 1),
+        (&biss, AbsoluteFault::Stuck(false), 2),
+        (&biss, AbsoluteFault::Error, 3),
+        (&ssi, AbsoluteFault::Error, 3),
     ];
-    for (fault, flag) in faults {
-        let mut bench = bench(&machine, 0.01);
+    for (machine, fault, flag) in faults {
+        let mut bench = bench(machine, 0.01);
         assert!(bench.switch_on(10_000_000).unwrap());
         // To the middle of a tick, between two readings.
         while bench.output("tick").unwrap() == 0 {

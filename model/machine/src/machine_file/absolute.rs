@@ -6,7 +6,7 @@ use super::{ClockSection, FixedPoint, LimitsSection};
 use crate::unit::AxisUnit;
 use posicast_blocks::absolute_encoder::{
     AbsoluteEncoderConfig, AbsoluteEncoderConfigError, AbsoluteFrame, AbsoluteLimits, AbsoluteProtocol, AbsoluteTimes,
-    AbsoluteTimesInSeconds, FrameCheck, MOST_BISS_HZ, MOST_OTHER_BITS, MOST_TOLERATED, POSITION_BITS,
+    AbsoluteTimesInSeconds, FrameCheck, FrameStatusBit, MOST_BISS_HZ, MOST_OTHER_BITS, MOST_TOLERATED, POSITION_BITS,
 };
 use posicast_blocks::axis::Cause;
 use posicast_shaper::unit::{short, show_seconds};
@@ -39,7 +39,14 @@ const JUMP_COUNTS: f64 = 8.0;
 /// Delay of a line there and back, s per m of cable.
 pub const CABLE_DELAY_S_PER_M: f64 = 10e-9;
 /// Keys that only the protocol SSI has.
-const OF_SSI: [&str; 4] = ["coding", "leading_bits", "trailing_bits", "parity"];
+const OF_SSI: [&str; 6] = [
+    "coding",
+    "leading_bits",
+    "trailing_bits",
+    "error_bit",
+    "error_level",
+    "parity",
+];
 
 /// An absolute encoder.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,6 +67,8 @@ pub struct AbsoluteSection {
 
 /// The codes of a position in SSI, with whether it is Gray code.
 pub(super) const CODINGS: [(bool, &str); 2] = [(false, "binary"), (true, "gray")];
+/// The levels of an error bit in SSI, with whether it is low at an error.
+pub(super) const ERROR_LEVELS: [(bool, &str); 2] = [(true, "low"), (false, "high")];
 /// The checks of a frame in SSI.
 pub(super) const PARITIES: [(FrameCheck, &str); 3] = [
     (FrameCheck::None, "none"),
@@ -117,6 +126,7 @@ pub(super) fn read(table: &Table<'_, '_>, protocol: AbsoluteProtocol) -> Option<
     let answer_s = table.number("answer_s", TIME_S).unwrap_or(DEFAULT_ANSWER_S);
     let [leading_bits, trailing_bits] =
         ["leading_bits", "trailing_bits"].map(|key| table.integer(key, 0, OTHER_BITS).unwrap_or(0));
+    let error = error_bit(table, trailing_bits);
     let gray = table.word("coding", &CODINGS).unwrap_or(false);
     let check = table.word("parity", &PARITIES).unwrap_or(FrameCheck::None);
     let tolerated = table.integer("tolerated", 0, TOLERATED).unwrap_or(DEFAULT_TOLERATED);
@@ -129,6 +139,7 @@ pub(super) fn read(table: &Table<'_, '_>, protocol: AbsoluteProtocol) -> Option<
             trailing_bits,
             gray,
             check,
+            error,
             ..AbsoluteFrame::ssi(position_bits)
         },
         AbsoluteProtocol::BissC => AbsoluteFrame::biss_c(position_bits),
@@ -144,6 +155,37 @@ pub(super) fn read(table: &Table<'_, '_>, protocol: AbsoluteProtocol) -> Option<
         tolerated,
         offset,
         cable_m,
+    })
+}
+
+/// The trailing bit of SSI that shows an error.
+fn error_bit(table: &Table<'_, '_>, trailing_bits: u32) -> Option<FrameStatusBit> {
+    let active_low = table.word("error_level", &ERROR_LEVELS);
+    if active_low.is_some() && !table.has("error_bit") {
+        let found = format!("error_level = {} without error_bit", table.quote("error_level"));
+        let allowed = "error_level beside error_bit, whose level it is";
+        table.contradiction(
+            "error_level",
+            found,
+            allowed,
+            "add `error_bit`, or remove `error_level`",
+        );
+    }
+    let bit = table.integer("error_bit", 1, OTHER_BITS)?;
+    if bit > trailing_bits {
+        let found = format!("error_bit = {bit} with trailing_bits = {trailing_bits}");
+        let allowed = "one of the trailing bits, the first behind the position being 1";
+        table.contradiction(
+            "error_bit",
+            found,
+            allowed,
+            "correct `error_bit`, or raise `trailing_bits`",
+        );
+        return None;
+    }
+    Some(FrameStatusBit {
+        place: bit - 1,
+        active_low: active_low.unwrap_or(false),
     })
 }
 

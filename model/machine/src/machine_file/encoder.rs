@@ -1,8 +1,8 @@
 //! `[axis.encoder]`: what the axis's position is read from: A, B and index, or an absolute encoder.
 
 use super::absolute::{
-    self, AbsoluteSection, BITS, CABLE_M, CODINGS, DEFAULT_ANSWER_S, DEFAULT_PAUSE_S, DEFAULT_TOLERATED, LINE_HZ,
-    OTHER_BITS, PARITIES, TIME_S, TOLERATED, TURNS_BITS,
+    self, AbsoluteSection, BITS, CABLE_M, CODINGS, DEFAULT_ANSWER_S, DEFAULT_PAUSE_S, DEFAULT_TOLERATED, ERROR_LEVELS,
+    LINE_HZ, OTHER_BITS, PARITIES, TIME_S, TOLERATED, TURNS_BITS,
 };
 use super::key::{Default, Key, Values};
 use super::table::Table;
@@ -33,7 +33,7 @@ const KINDS: [(Option<AbsoluteProtocol>, &str); 3] = [
 /// Keys that only an encoder with A, B and index has.
 const OF_QUADRATURE: [&str; 2] = ["filter_clocks", "index"];
 /// Keys that only an absolute encoder has.
-const OF_ABSOLUTE: [&str; 12] = [
+const OF_ABSOLUTE: [&str; 14] = [
     "bits",
     "turns_bits",
     "clock_hz",
@@ -42,6 +42,8 @@ const OF_ABSOLUTE: [&str; 12] = [
     "coding",
     "leading_bits",
     "trailing_bits",
+    "error_bit",
+    "error_level",
     "parity",
     "tolerated",
     "offset",
@@ -116,10 +118,23 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "trailing_bits",
         Values::Integer(0, OTHER_BITS),
-        "Bits behind the position, without meaning.",
+        "Bits behind the position; without meaning, but for `error_bit`.",
     )
     .default(Default::Integer(0))
     .rule("only `ssi`"),
+    Key::new(
+        "error_bit",
+        Values::Integer(1, OTHER_BITS),
+        "Which of the trailing bits shows that the position is wrong, the first behind it being 1; such a reading fails.",
+    )
+    .rule("only `ssi`; at most `trailing_bits`"),
+    Key::new(
+        "error_level",
+        Values::Word(|| ERROR_LEVELS.map(|(_, name)| name).to_vec()),
+        "Level of `error_bit` at an error.",
+    )
+    .default(Default::Word("high"))
+    .rule("only beside `error_bit`"),
     Key::new(
         "parity",
         Values::Word(|| PARITIES.map(|(_, name)| name).to_vec()),

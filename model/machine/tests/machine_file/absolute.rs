@@ -1,6 +1,8 @@
 //! `[axis.encoder]` with an absolute encoder: values, defaults, what the hardware gets, and what is refused with which message.
 
-use posicast_blocks::absolute_encoder::{AbsoluteFrame, AbsoluteLimits, AbsoluteProtocol, AbsoluteTimes, FrameCheck};
+use posicast_blocks::absolute_encoder::{
+    AbsoluteFrame, AbsoluteLimits, AbsoluteProtocol, AbsoluteTimes, FrameCheck, FrameStatusBit,
+};
 use posicast_machine::hardware::Hardware;
 use posicast_machine::plan::design_machine;
 
@@ -53,21 +55,49 @@ fn the_hardware_gets_clocks_and_counts() {
 
 #[test]
 fn ssi_has_its_own_keys() {
-    let keys = "kind = \"ssi\"\nturns_bits = 3\ncoding = \"gray\"\nparity = \"even\"\nleading_bits = 2\ntrailing_bits = 1\n\
-                tolerated = 4";
+    let keys = "kind = \"ssi\"\nturns_bits = 3\ncoding = \"gray\"\nparity = \"even\"\nleading_bits = 2\ntrailing_bits = 3\n\
+                error_bit = 2\nerror_level = \"low\"\ntolerated = 4";
     let text = with(keys)
         .replacen("answer_s = 15e-6                      #", "#", 1)
         .replacen("clock_hz = 5_000_000", "clock_hz = 1_000_000", 1);
     let encoder = right(&text).axes[0].encoder.unwrap().absolute.unwrap();
     let expected = AbsoluteFrame {
         leading_bits: 2,
-        trailing_bits: 1,
+        trailing_bits: 3,
         gray: true,
         check: FrameCheck::EvenParity,
+        error: Some(FrameStatusBit {
+            place: 1,
+            active_low: true,
+        }),
         ..AbsoluteFrame::ssi(29)
     };
     assert_eq!((encoder.frame, encoder.tolerated), (expected, 4));
     assert_eq!(encoder.protocol, AbsoluteProtocol::Ssi);
+}
+
+#[test]
+fn an_error_bit_of_ssi_is_one_of_the_trailing_bits() {
+    for (keys, found, allowed, remedy) in [
+        (
+            "error_bit = 2",
+            "error_bit = 2 with trailing_bits = 1",
+            "one of the trailing bits, the first behind the position being 1",
+            "correct `error_bit`, or raise `trailing_bits`",
+        ),
+        (
+            "error_level = \"low\"",
+            "error_level = \"low\" without error_bit",
+            "error_level beside error_bit, whose level it is",
+            "add `error_bit`, or remove `error_level`",
+        ),
+    ] {
+        let text = with(&format!("kind = \"ssi\"\ntrailing_bits = 1\n{keys}"));
+        let error = wrong(&text.replacen("answer_s = 15e-6                      #", "#", 1));
+        let problem = &error.problems()[0];
+        assert_eq!(problem.cause.to_string(), format!("found {found}; allowed: {allowed}"));
+        assert_eq!(problem.remedy, remedy);
+    }
 }
 
 #[test]

@@ -26,7 +26,7 @@ pub enum AbsoluteFault {
     Stuck(bool),
     /// This bit of each frame is inverted; 0 is the first one of the frame.
     Inverted(u32),
-    /// The encoder sets its error bit (BiSS-C only).
+    /// The encoder sets its error bit, if its frame has one.
     Error,
 }
 
@@ -188,13 +188,11 @@ impl AbsoluteEncoder {
         let place = (self.offset + if self.invert { -count } else { count }) as u64 & range;
         let code = if frame.gray { place ^ place >> 1 } else { place };
         let mut bits = code << frame.trailing_bits;
-        if self.protocol == AbsoluteProtocol::BissC {
-            // Error and warning are low where they are set.
-            bits |= if self.fault == Some(AbsoluteFault::Error) {
-                0b01
-            } else {
-                0b11
-            };
+        let is_wrong = self.fault == Some(AbsoluteFault::Error);
+        for (bit, is_set) in [(frame.error, is_wrong), (frame.warning, false)] {
+            if let Some(bit) = bit {
+                bits |= u64::from(is_set != bit.active_low) << (frame.trailing_bits - 1 - bit.place);
+            }
         }
         let length = frame.leading_bits + frame.position_bits + frame.trailing_bits;
         let ones = bits.count_ones() & 1;
