@@ -17,10 +17,13 @@
 //! [`StageBench::watched`].
 
 mod line_changes;
+mod pin_record;
 mod watch;
 
 pub use line_changes::LineChange;
 use line_changes::LineRecord;
+pub use pin_record::PinChange;
+use pin_record::{PinRecord, Scheduled};
 pub use watch::Watched;
 
 use posicast_blocks::component::Component;
@@ -201,6 +204,9 @@ pub struct StageBench {
     now: u64,
     samples: Option<Vec<Vec<AxisSample>>>,
     lines: Vec<LineRecord>,
+    pins: PinRecord,
+    /// Changes of inputs that are still to come, the next one first.
+    scheduled: Vec<Scheduled>,
     faults: Vec<Fault>,
     shown: Vec<DrivePins>,
     watched: Vec<Watched>,
@@ -299,6 +305,8 @@ impl StageBench {
             now: 0,
             samples: None,
             lines: Vec::new(),
+            pins: PinRecord::default(),
+            scheduled: Vec::new(),
         };
         // An axis with steps has fewer lines, and a stage of such axes no `pll_locked`.
         let lines = bench
@@ -472,6 +480,7 @@ impl StageBench {
     pub fn clocks(&mut self, clocks: u64) -> Result<(), Error> {
         let end = self.now + clocks;
         while self.now < end {
+            let unscheduled = self.drive_scheduled();
             let axes = self.plants.iter_mut().zip(&self.places).zip(&self.faults);
             for (((plant, places), fault), watched) in axes.zip(&mut self.watched) {
                 watched.look(self.model.value(places.recorded[2]), plant);
@@ -499,12 +508,13 @@ impl StageBench {
                 }
                 None => {
                     let quiet = self.plants.iter().map(AxisPlant::quiet_clocks);
-                    let most = quiet.min().unwrap_or(1).clamp(1, end - self.now);
+                    let most = quiet.min().unwrap_or(1).clamp(1, unscheduled.min(end - self.now));
                     self.model
                         .hold(&self.inputs, most, &mut self.outputs)
                         .map_err(stopped(self.now))?
                 }
             };
+            self.pins.pass(self.now, &self.inputs, &self.outputs, &self.plants);
             if self.outputs[self.tick] != 0 {
                 self.sample();
                 self.lines.iter_mut().for_each(|record| record.tick(self.now));
