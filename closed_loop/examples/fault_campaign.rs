@@ -1,7 +1,7 @@
 //! Runs the fault campaign with any number of cases; see `docs/fault-campaign.md`.
 //!
 //! ```text
-//! cargo run --release --example fault_campaign -- --cases 10000 --seed 1 --rtl 44
+//! cargo run --release --example fault_campaign -- --cases 10000 --seed 1 --rtl 58
 //! ```
 //!
 //! `--machine steps` takes the machine with step inputs in place of that with loops, `--machine absolute` that with absolute encoders.

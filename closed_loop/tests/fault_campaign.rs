@@ -7,8 +7,8 @@ use std::thread;
 
 use posicast_blocks::axis::Cause;
 use posicast_blocks::component::Component;
-use posicast_blocks::stage::Supervision;
-use posicast_closed_loop::fault_campaign::{Bed, FaultKind, FaultReport, TABLE, run, run_with_rtl};
+use posicast_blocks::stage::{Follower, StageConfig, Supervision};
+use posicast_closed_loop::fault_campaign::{Bed, FaultKind, FaultReport, run, run_with_rtl};
 use posicast_closed_loop::stage_bench::{Wire, state};
 use posicast_machine::machine_file::{self, Machine, PwmMode};
 use posicast_machine::motion::{TickLimits, plan_move};
@@ -29,8 +29,8 @@ fn threads() -> usize {
 }
 
 /// Returns the first case of a kind.
-fn number(kind: FaultKind) -> u64 {
-    TABLE.iter().position(|row| row.kind == kind).unwrap() as u64
+fn number(bed: &Bed, kind: FaultKind) -> u64 {
+    bed.rows.iter().position(|row| row.kind == kind).unwrap() as u64
 }
 
 /// Runs one case of that kind on a machine whose stage has a supervision that differs from the expected one.
@@ -38,14 +38,20 @@ fn on_a_changed_stage(kind: FaultKind, change: fn(&mut Supervision)) -> FaultRep
     on_a_changed(Bed::new().unwrap(), kind, change)
 }
 
-fn on_a_changed(mut bed: Bed, kind: FaultKind, change: fn(&mut Supervision)) -> FaultReport {
-    // The expectations do not change.
+fn on_a_changed(bed: Bed, kind: FaultKind, change: fn(&mut Supervision)) -> FaultReport {
+    on_another(bed, kind, |config| {
+        for axis in &mut config.axes {
+            change(&mut axis.supervision);
+        }
+    })
+}
+
+/// Runs one case of that kind on a stage of another configuration; the expectations do not change.
+fn on_another(mut bed: Bed, kind: FaultKind, change: impl Fn(&mut StageConfig)) -> FaultReport {
     let mut config = bed.stage.config.clone();
-    for axis in &mut config.axes {
-        change(&mut axis.supervision);
-    }
+    change(&mut config);
     bed.component = Component::stage(&config).unwrap();
-    let first = bed.rows.iter().position(|row| row.kind == kind).unwrap() as u64;
+    let first = number(&bed, kind);
     run(&bed, first..first + 1, SEED, 1).unwrap()
 }
 
@@ -58,9 +64,9 @@ fn assert_says(report: &FaultReport, what: &str) {
 #[test]
 fn every_fault_is_handled_as_stated() {
     let bed = Bed::new().unwrap();
-    let report = run(&bed, 0..ROUNDS * TABLE.len() as u64, SEED, threads()).unwrap();
+    let report = run(&bed, 0..ROUNDS * bed.rows.len() as u64, SEED, threads()).unwrap();
     assert_eq!(report.failures(), [""; 0], "{report}");
-    assert!(report.kinds().iter().all(|kind| kind.cases == ROUNDS));
+    assert!(report.kinds().len() == 58 && report.kinds().iter().all(|kind| kind.cases == ROUNDS));
 }
 
 #[test]
@@ -68,7 +74,7 @@ fn every_fault_of_an_axis_with_steps_is_handled_as_stated() {
     let bed = Bed::with_steps().unwrap();
     let report = run(&bed, 0..ROUNDS * bed.rows.len() as u64, SEED, threads()).unwrap();
     assert_eq!(report.failures(), [""; 0], "{report}");
-    assert!(report.kinds().len() == 27 && report.kinds().iter().all(|kind| kind.cases == ROUNDS));
+    assert!(report.kinds().len() == 38 && report.kinds().iter().all(|kind| kind.cases == ROUNDS));
 }
 
 #[test]
@@ -76,7 +82,7 @@ fn every_fault_of_an_axis_with_an_absolute_encoder_is_handled_as_stated() {
     let bed = Bed::with_absolute_encoders().unwrap();
     let report = run(&bed, 0..ROUNDS * bed.rows.len() as u64, SEED, threads()).unwrap();
     assert_eq!(report.failures(), [""; 0], "{report}");
-    assert!(report.kinds().len() == 31 && report.kinds().iter().all(|kind| kind.cases == ROUNDS));
+    assert!(report.kinds().len() == 38 && report.kinds().iter().all(|kind| kind.cases == ROUNDS));
 }
 
 #[test]
@@ -85,9 +91,15 @@ fn lockstep_faults_with_the_rtl_beside_the_model() {
     let block = ComponentBlock::new(bed.component.clone(), "xy_stage", "xy");
     let sources = Sources::write(&block).unwrap();
     let device = || -> Result<Box<dyn Device>, Error> { Ok(Box::new(sources.verilated(&block, 1)?)) };
-    let first = number(FaultKind::RawFaultOneClock);
-    let report = run_with_rtl(&bed, first..first + 3, SEED, device).unwrap();
-    assert_eq!(report.failures(), [""; 0], "{report}");
+    for (kind, cases) in [
+        (FaultKind::RawFaultOneClock, 3),
+        (FaultKind::ProbeFull, 1),
+        (FaultKind::CompareFast, 1),
+    ] {
+        let first = number(&bed, kind);
+        let report = run_with_rtl(&bed, first..first + cases, SEED, device).unwrap();
+        assert_eq!(report.failures(), [""; 0], "{report}");
+    }
 }
 
 #[test]
@@ -106,7 +118,7 @@ fn long_a_lost_encoder_is_seen_in_every_mode_of_pwm_and_encoder() {
             });
             let bed = bed.unwrap();
             for kind in [FaultKind::EncoderLineStuck, FaultKind::EncoderLineStuckUnwatched] {
-                let cases = (0..3).map(|round| number(kind) + round * TABLE.len() as u64);
+                let cases = (0..3).map(|round| number(&bed, kind) + round * bed.rows.len() as u64);
                 for case in cases {
                     let report = run(&bed, case..case + 1, SEED, 1).unwrap();
                     // The gains are those of another mode: the end position of small moves is not tested here.
@@ -183,7 +195,7 @@ fn a_wrong_sign_is_seen_by_the_watch_of_the_encoder_alone() {
         FaultKind::EncoderReversedUnwatched,
         FaultKind::EncoderReversedInHoldUnwatched,
     ] {
-        for case in (0..4).map(|round| number(kind) + round * TABLE.len() as u64) {
+        for case in (0..4).map(|round| number(&bed, kind) + round * bed.rows.len() as u64) {
             let report = run(&bed, case..case + 1, SEED, 1).unwrap();
             assert_eq!(report.failures(), [""; 0], "{report}");
         }
@@ -222,4 +234,23 @@ fn mutate_a_slower_filter_is_late() {
 fn mutate_a_longer_stop_is_late() {
     let report = on_a_changed_stage(FaultKind::Stop, |watched| watched.settle_ticks += 40);
     assert_says(&report, "a quick stop of");
+}
+
+#[test]
+fn mutate_a_late_count_shows_in_pulses_and_captures() {
+    // A pulse shows one clock; a captured position shows it where a count changed meanwhile.
+    for (kind, late_clocks, what) in [
+        (FaultKind::CompareReversal, 1, "compare: "),
+        (FaultKind::CompareFast, 1, "compare: "),
+        (FaultKind::ProbeTaken, 32, "capture: Entry"),
+    ] {
+        let report = on_another(Bed::new().unwrap(), kind, |config| {
+            for axis in &mut config.axes {
+                if let Follower::Loop(of) = &mut axis.follower {
+                    of.encoder_filter_clocks += late_clocks;
+                }
+            }
+        });
+        assert_says(&report, what);
+    }
 }

@@ -9,6 +9,7 @@ use posicast_machine::machine_file::{AbsoluteSection, AxisSection, LimitsSection
 use super::expectation::{Due, Expectation, FAULT, Lasts, NOTHING, bits};
 use super::kind::{FaultKind, FaultRow, LOST, TABLE};
 use super::machine::TICK_CLOCKS;
+use super::positions;
 
 /// Bits of a position: so few that a reading over SSI and the controllers fit into a tick. The moves are of some hundred counts.
 pub(super) const BITS: u32 = 14;
@@ -75,7 +76,7 @@ pub(super) fn change(axis: &mut AxisSection) {
             cable_m: Some(10.0),
         });
     }
-    axis.scale = None;
+    (axis.scale, axis.compare) = (None, None);
     axis.limits = axis.limits.map(|limits| LimitsSection {
         deviation: None,
         ..limits
@@ -122,5 +123,5 @@ pub(super) fn rows() -> Vec<FaultRow> {
             },
         },
     ];
-    common.chain(own).collect()
+    common.chain(own).chain(positions::rows::of_absolute()).collect()
 }

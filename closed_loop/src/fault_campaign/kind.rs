@@ -60,6 +60,20 @@ pub enum FaultKind {
     AbsoluteStuck,
     AbsoluteBit,
     AbsoluteBrief,
+    ProbeBounces,
+    ProbeShort,
+    ProbeFull,
+    ProbeTaken,
+    ProbeWindow,
+    ProbeStuck,
+    ProbeCleared,
+    CompareWritten,
+    CompareArmed,
+    CompareDisarmed,
+    CompareOverlaps,
+    CompareGlitch,
+    CompareReversal,
+    CompareFast,
 }
 
 /// A row of the table.
@@ -116,7 +130,7 @@ const fn fault(cause: Cause, due: Due) -> Expectation {
     }
 }
 
-/// All kinds of faults.
+/// All kinds of faults of a machine with loops, without those of its compare and capture.
 pub const TABLE: [FaultRow; 44] = [
     row(
         FaultKind::EmergencyStop,

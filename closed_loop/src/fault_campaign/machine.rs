@@ -7,18 +7,22 @@
 //! | modes | 131 and 93 Hz | ten times that | the shaper's delay is about 50 ticks |
 //! | acceleration, jerk | 8 m/s², 400 m/s³ | 800 m/s², 400,000 m/s³ | 300 counts in 150 ticks |
 //! | scale | none | on both axes, compared with the motor | to test its trip |
+//! | compare, capture | none | on both axes | to test them in every case |
 //! | monitors | off | all | to test them |
 
 use posicast_blocks::component::Component;
 use posicast_machine::hardware::{self, MachineStage};
-use posicast_machine::machine_file::{self, AxisSection, LimitsSection, Machine, Scale, ScaleUse};
+use posicast_machine::machine_file::{
+    self, AxisSection, CaptureEdge, CaptureSection, CompareDirection, CompareSection, LimitsSection, Machine, Scale,
+    ScaleUse,
+};
 use posicast_machine::plan::design_machine;
 use posicast_machine::plant::axis::{AxisPlant, PlantOptions};
 
 use super::CampaignError;
 use super::absolute;
 use super::kind::{FaultRow, TABLE};
-use super::steps;
+use super::{positions, steps};
 use crate::stage_bench::StageBench;
 use posicast_testbench::lockstep::Device;
 
@@ -73,6 +77,10 @@ impl Bed {
         let failed = |reason: String| CampaignError::Machine(reason);
         let mut machine = machine_file::parse("xy-stage.toml", EXAMPLE).map_err(|error| failed(error.to_string()))?;
         machine.clock.sample_hz = SAMPLE_HZ;
+        machine.capture = Some(CaptureSection {
+            edge: CaptureEdge::Both,
+            filter_s: 0.0,
+        });
         for axis in &mut machine.axes {
             for mode in &mut axis.modes {
                 mode.mode.frequency_hz *= FASTER;
@@ -86,6 +94,7 @@ impl Bed {
                 invert: false,
             });
             axis.limits = Some(limits(axis.limits.unwrap_or_default()));
+            axis.compare = Some(compare(axis.counts_per_unit));
             change(axis);
         }
         let design = design_machine(&machine).map_err(|error| failed(error.to_string()))?;
@@ -96,7 +105,7 @@ impl Bed {
             machine,
             stage,
             component,
-            rows: TABLE.to_vec(),
+            rows: TABLE.into_iter().chain(positions::rows::of_encoders()).collect(),
         })
     }
 
@@ -137,6 +146,18 @@ impl Bed {
             device,
             seed,
         )?)
+    }
+}
+
+/// A compare of which every case writes the words anew.
+fn compare(counts_per_unit: f64) -> CompareSection {
+    CompareSection {
+        spacing: 10.0 / counts_per_unit,
+        positions: 1,
+        first: 0.0,
+        direction: CompareDirection::Both,
+        hysteresis: 0.0,
+        pulse_s: 1e-6,
     }
 }
 

@@ -12,6 +12,7 @@
 //! | `injection` | injects a fault and removes it |
 //! | `observation` | states and pins from the fault on, clock by clock |
 //! | `judge` | compares observation and expectation |
+//! | `positions` | compare and capture in every case: pulses and entries from the recorded pins |
 //! | `run` | runs one case from reset to the small move |
 //! | `report` | figures per kind |
 //!
@@ -30,6 +31,7 @@ mod judge;
 mod kind;
 mod machine;
 mod observation;
+mod positions;
 mod report;
 mod run;
 mod steps;

@@ -9,6 +9,7 @@ use posicast_machine::machine_file::{AxisSection, LimitsSection, StepsSection};
 use super::expectation::{Due, Expectation, FAULT, Lasts, NOTHING, Seen, bits};
 use super::kind::{FaultKind, FaultRow, TABLE};
 use super::machine::{STALL_TICKS, TICK_CLOCKS, TICK_S};
+use super::positions;
 
 /// A million steps per second, four times the largest velocity.
 const TIMES: StepTimesInSeconds = StepTimesInSeconds {
@@ -140,5 +141,5 @@ pub(super) fn rows() -> Vec<FaultRow> {
             },
         },
     ];
-    common.chain(own).collect()
+    common.chain(own).chain(positions::rows::of_steps()).collect()
 }
