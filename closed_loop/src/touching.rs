@@ -14,7 +14,7 @@ const FAR_LOOK_CLOCKS: u64 = 2000;
 pub struct Contact {
     /// Index of the axis.
     pub axis: usize,
-    /// Counts from where the axis begins; it lies on the side of its sign, and is not 0.
+    /// Counts from where the axis begins; the contact lies on the side of its sign. With 0 the probe touches all the time.
     pub count: i64,
     /// Whether the line is low while the probe touches.
     pub is_low: bool,

@@ -16,7 +16,7 @@ fn machine(more: &str) -> Machine {
     machine_file::parse("xy-stage.toml", &format!("{text}{more}")).unwrap()
 }
 
-/// The stage with a probe that touches, with a low line, while X is at this count or beyond it.
+/// The stage with a probe that touches, with a low line, while X is at this count or beyond it; all the time with 0.
 fn open<'m>(machine: &'m Machine, stage: &'m StageHardware, count: i64) -> HostedStage<'m, LinkedBench<Touching>> {
     let contact = Contact {
         axis: 0,
@@ -63,6 +63,18 @@ fn a_probing_move_finds_where_the_probe_touched_and_says_how_far_it_went_on() {
     host.move_axes(&[way(0, -0.002)]).unwrap();
     let again = host.probe(way(0, 0.01)).unwrap();
     assert!((again.found.positions[0] - 3000).abs() <= 1, "{again:?}");
+}
+
+#[test]
+fn a_line_that_is_stuck_at_the_touch_from_the_start_is_refused_and_nothing_moves() {
+    let machine = machine("\n[capture]\nedge = \"falling\"\nfilter_s = 1e-6\n");
+    let stage = stage(&machine);
+    let mut host = open(&machine, &stage, 0);
+    host.switch_on(&[0], false).unwrap();
+    let error = host.probe(way(0, 0.01)).unwrap_err().to_string();
+    assert!(error.contains("the probe touches before the move"), "{error}");
+    let status = host.status().unwrap()[0].clone();
+    assert!(status.can_start && status.position.abs() <= 1.0, "{status:?}");
 }
 
 #[test]

@@ -283,6 +283,9 @@ fn tests(name: &str, filters: &[&str], cases: Option<u64>) -> Result<Rung, Box<d
     ))
 }
 
+/// Cases that have every kind of fault of each machine at least once.
+const EVERY_KIND: u64 = 60;
+
 /// Runs the fault campaign of a stage with loops, of one with steps, and of one with absolute encoders.
 fn faults(cases: u64) -> Result<Rung, Box<dyn Error>> {
     let began = Instant::now();
@@ -294,7 +297,7 @@ fn faults(cases: u64) -> Result<Rung, Box<dyn Error>> {
         ("absolute", "stage with absolute encoders", 4),
     ] {
         let cases = (cases / share).max(1);
-        let with_rtl = cases.min(36);
+        let with_rtl = cases.min(EVERY_KIND);
         let mut command = Command::new(programs()?.0.join("fault_campaign"));
         command.args([
             "--machine",
