@@ -10,6 +10,7 @@ use posicast_flow::text::shell_word;
 use posicast_flow::verify::DEFAULT_SEED;
 use posicast_flow::{Failure, clocks};
 use posicast_testbench::shard::Shard;
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -196,18 +197,19 @@ struct MergeArgs {
 }
 
 impl PartArgs {
-    fn part(&self) -> CampaignPart {
+    fn part(&self, given: &[OsString]) -> CampaignPart {
         CampaignPart {
             shard: self.shard,
             unit: self.unit,
             seed: self.seed,
             json: self.json.clone(),
-            repeat: repeat(),
+            repeat: repeat(given),
         }
     }
 }
 
-pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+/// Runs the campaign that `args` describe; `given` are the command's words, for the line that repeats it.
+pub(crate) fn run(args: &Args, given: &[OsString]) -> Result<(), Failure> {
     let started = Instant::now();
     let (kind, part) = match &args.kind {
         Kind::Merge(args) => {
@@ -277,19 +279,19 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             (campaign::CampaignKind::Sweep(options), &args.part)
         }
     };
-    let done = campaign::run(&kind, &part.part(), started, &Terminal)?;
+    let done = campaign::run(&kind, &part.part(given), started, &Terminal)?;
     output::show(done, false, render::campaign::part)
 }
 
-/// This command without the options that choose a part of the campaign.
-fn repeat() -> String {
+/// The command of these words without the options that choose a part of the campaign.
+fn repeat(given: &[OsString]) -> String {
     let mut words = vec!["posicast".to_owned()];
-    let mut given = std::env::args().skip(1);
+    let mut given = given.iter().skip(1);
     while let Some(word) = given.next() {
-        match word.as_str() {
+        match word.to_string_lossy().as_ref() {
             "--shard" | "--json" => drop(given.next()),
-            _ if word.starts_with("--shard=") || word.starts_with("--json=") => {}
-            _ => words.push(shell_word(word.as_ref())),
+            word if word.starts_with("--shard=") || word.starts_with("--json=") => {}
+            word => words.push(shell_word(word.as_ref())),
         }
     }
     words.join(" ")

@@ -7,11 +7,10 @@ use posicast_flow::{Failure, Reason};
 use std::error::Error;
 use std::fmt;
 use std::io::{IsTerminal, Write};
-use std::process::ExitCode;
 
 /// Prints why the command stopped: with an excerpt of the place on a terminal, but in plain lines in a pipe, where a log can be searched
 /// for them.
-pub(crate) fn report(failure: &Failure) -> ExitCode {
+pub(crate) fn report(failure: &Failure) -> u8 {
     let mut err = std::io::stderr().lock();
     // If standard error cannot be written, nothing sensible is left to do.
     let _ = match failure {
@@ -21,11 +20,11 @@ pub(crate) fn report(failure: &Failure) -> ExitCode {
         }
         Failure::Input(reason) | Failure::MissingTool(reason) => write_plain(&mut stderr(), reason),
     };
-    ExitCode::from(match failure {
+    match failure {
         Failure::Check(_) => 1,
         Failure::Input(_) => 2,
         Failure::MissingTool(_) => 3,
-    })
+    }
 }
 
 /// Beginning of a line that describes an error.

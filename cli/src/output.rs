@@ -21,6 +21,12 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
+/// Writes what standard output still buffers. At the end of a process only Rust's own `main` does that, which Python's is not.
+pub(crate) fn flush() {
+    // A reader that has ended is no error, and others were reported by the writes.
+    let _ = std::io::stdout().flush();
+}
+
 /// Prints text with coloured verdicts; leaves the colours out if nobody would see them.
 pub(crate) fn print_styled(text: &str) -> Result<(), Failure> {
     let colours = AutoStream::choice(&std::io::stdout()) != ColorChoice::Never;

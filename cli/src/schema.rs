@@ -104,6 +104,18 @@ impl Name {
     }
 }
 
+/// The JSON Schema with this name, as `posicast schema NAME` prints it; `None` for a name that is none of [`names`].
+pub fn text(name: &str) -> Option<String> {
+    let name = Name::from_str(name, false).ok()?;
+    name.text().ok()
+}
+
+/// The names of the schemas.
+pub fn names() -> Vec<String> {
+    let names = Name::value_variants().iter().filter_map(ValueEnum::to_possible_value);
+    names.map(|name| name.get_name().to_owned()).collect()
+}
+
 /// Name of the schema's file in the first line of machine files that `posicast new` writes.
 const FILE: &str = "posicast-machine.schema.json";
 

@@ -4,12 +4,15 @@
 
 mod answers;
 mod options;
+mod own_files;
+mod program;
 mod progress;
 
 use std::io;
 use std::path::{Path, PathBuf};
 
 use self::options::{How, When, Which};
+pub use self::program::{compare, main};
 use self::progress::LateBar;
 use crate::WaveError;
 use crate::diff::{self, Comparison, DiffVerdict};

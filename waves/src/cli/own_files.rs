@@ -5,9 +5,9 @@ use std::fs::File;
 use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
-use wavecmp::WaveError;
-use wavecmp::cli::CommandHost;
-use wavecmp::files::{OutputSink, WriteContent};
+use super::CommandHost;
+use crate::WaveError;
+use crate::files::{OutputSink, WriteContent};
 
 const MARK: &str = "written by wavecmp";
 /// Number of bytes at the beginning of a file in which the mark is looked for.
