@@ -155,6 +155,30 @@ proptest! {
     }
 
     #[test]
+    fn prop_many_samples_at_once_are_the_same_in_pieces_of_any_length(
+        table in prop_oneof![tables(14, 40), tables(14, 5000)],
+        lengths in prop::collection::vec(prop_oneof![0usize..70, 2000usize..9000], 1..5),
+        seed: u32,
+    ) {
+        let config = ShaperConfig::new(32, table).unwrap();
+        let (mut each, mut many) = (SampleShaper::new(&config), SampleShaper::new(&config));
+        let mut word = seed as i32;
+        for length in lengths {
+            let command: Vec<i32> = (0..length).map(|_| {
+                word = word.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                word
+            }).collect();
+            let expected: Vec<i32> = command.iter().map(|x| each.push(i64::from(*x)) as i32).collect();
+            let mut shaped = vec![0; length];
+            many.shape(&command, &mut shaped).unwrap();
+            prop_assert_eq!(shaped, expected);
+            prop_assert_eq!(many.push(7), each.push(7));
+            prop_assert_eq!(many.saturated(), each.saturated());
+        }
+        prop_assert!(many.shape(&[1i64, 2], &mut [0; 3]).is_err());
+    }
+
+    #[test]
     fn prop_a_constant_goes_through_unchanged((config, _) in cases(), x: i64) {
         let mut fast = SampleShaper::new(&config);
         let started = fast.start(x);

@@ -62,7 +62,7 @@ pub use config::{
 pub(crate) use memory::Arbitrary;
 pub use motion::MotionShaper;
 pub use ports::{Inputs, Outputs, ports, swap_how};
-pub use sample::{LoadError, SampleShaper};
+pub use sample::{CommandWord, LengthError, LoadError, SampleShaper};
 
 use tables::Tables;
 

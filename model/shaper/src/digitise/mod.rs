@@ -14,12 +14,14 @@
 mod error;
 pub mod grid;
 mod quantise;
+mod stream;
 
 use std::collections::BTreeMap;
 use std::fmt;
 
 pub use error::{DELAY_MAX_SAMPLES, DigitiseError, TAPS_MAX};
 pub use quantise::{quantise, quantising_error};
+pub use stream::RealShaper;
 
 use crate::design::kind::ShaperKind;
 use crate::design::{AxisDesign, Findings, ShaperParts};
