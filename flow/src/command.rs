@@ -8,7 +8,7 @@ use posicast_machine::machine_file::{AxisSection, Machine};
 use posicast_machine::motion::{
     AxisMove, SAMPLES_MAX, beyond_limits, command_words, end_velocity, modulo_words, resample, settle_s,
 };
-use posicast_machine::plan::MachineDesign;
+use posicast_machine::plan::{AxisTables, MachineDesign};
 use posicast_machine::spelling::did_you_mean;
 use std::fs::File;
 use std::path::Path;
@@ -49,20 +49,60 @@ pub(crate) fn words(
                 (positions, axis.loop_counts_per_unit())
             }
         };
-        let (bits, fraction) = (machine.fixed_point.command_bits, machine.fixed_point.command_fraction);
-        let of_positions = if axis.modulo {
-            modulo_words(&positions, counts_per_unit, bits, fraction, &tables.table)
-        } else {
-            command_words(&positions, counts_per_unit, bits, fraction)
-        };
-        words.push(of_positions.map_err(|e| axis_failure(axis, e))?);
+        words.push(axis_words(machine, axis, tables, &positions, counts_per_unit)?);
     }
+    Ok(equally_long(words))
+}
+
+/// The words of positions by axis and sample, in the axes' units.
+pub(crate) fn words_of(machine: &Machine, design: &MachineDesign, positions: &[Vec<f64>]) -> Result<Words, Failure> {
+    if positions.len() != machine.axes.len() {
+        let names: Vec<&str> = machine.axes.iter().map(|axis| axis.name.as_str()).collect();
+        let (found, allowed) = (positions.len(), names.len());
+        return Err(
+            Failure::input(format!("positions of {found} axes; the machine has {allowed}"))
+                .with_help(format!("give the positions of {}", names.join(", "))),
+        );
+    }
+    let axes = machine.axes.iter().zip(&design.axes).zip(positions);
+    let words = axes.map(|((axis, tables), positions)| {
+        if positions.is_empty() || positions.len() > SAMPLES_MAX {
+            let found = positions.len();
+            return Err(axis_failure(
+                axis,
+                format!("{found} samples; allowed are 1 to {SAMPLES_MAX}"),
+            ));
+        }
+        axis_words(machine, axis, tables, positions, axis.loop_counts_per_file_unit())
+    });
+    Ok(equally_long(words.collect::<Result<_, Failure>>()?))
+}
+
+/// The words of an axis's positions.
+fn axis_words(
+    machine: &Machine,
+    axis: &AxisSection,
+    tables: &AxisTables,
+    positions: &[f64],
+    counts_per_unit: f64,
+) -> Result<Vec<i64>, Failure> {
+    let (bits, fraction) = (machine.fixed_point.command_bits, machine.fixed_point.command_fraction);
+    let words = if axis.modulo {
+        modulo_words(positions, counts_per_unit, bits, fraction, &tables.table)
+    } else {
+        command_words(positions, counts_per_unit, bits, fraction)
+    };
+    words.map_err(|error| axis_failure(axis, error))
+}
+
+/// The words with the last one repeated where an axis ends before another.
+fn equally_long(mut words: Words) -> Words {
     let longest = words.iter().map(Vec::len).max().unwrap_or(0);
     for of_axis in &mut words {
         let last = of_axis.last().copied().unwrap_or(0);
         of_axis.resize(longest, last);
     }
-    Ok(words)
+    words
 }
 
 /// The words as the hardware gets them, without whole turns.

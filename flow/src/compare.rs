@@ -26,9 +26,13 @@ pub fn band(text: &str) -> Result<f64, String> {
 /// [`Failure`] for a machine file that cannot be read.
 pub fn compare(path: &Path, band_percent: f64) -> Result<Outcome<Document>, Failure> {
     let machine = machine::read(path)?.machine;
-    let comparisons = compare_kinds(&machine, band_percent / 100.0);
-    let document = Document::new(&machine, band_percent, &comparisons);
-    Ok(Outcome::passed(document))
+    Ok(Outcome::passed(of_machine(&machine, band_percent)))
+}
+
+/// As [`compare`], for a machine that was read already.
+pub fn of_machine(machine: &Machine, band_percent: f64) -> Document {
+    let comparisons = compare_kinds(machine, band_percent / 100.0);
+    Document::new(machine, band_percent, &comparisons)
 }
 
 /// `design --compare --json`, and `kinds` in `report.json`.

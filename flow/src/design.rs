@@ -111,6 +111,16 @@ pub fn design(options: &Options, observer: &dyn Observer) -> Result<Outcome<Docu
     Ok(Outcome::passed(document).beside(&outputs))
 }
 
+/// The figures of a machine's shapers, for a machine that was read already: that of [`design`] without options. `path` names it in messages.
+///
+/// # Errors
+/// [`Failure`] for a machine whose shapers do not exist.
+pub fn described(machine: &Machine, path: &Path, certify: bool) -> Result<Document, Failure> {
+    let mut report = DesignReport::new(machine, path)?;
+    report.certify = certify;
+    Ok(report.json())
+}
+
 /// The design of a machine with its figures at every mode.
 pub struct DesignReport<'a> {
     /// The machine.

@@ -10,13 +10,13 @@ mod pictures;
 use crate::Outcome;
 use crate::failure::Failure;
 use crate::files::{ResultForm, one_document};
-use crate::plot;
+use crate::plot::{self, Panel};
 use crate::template::MachineKind;
 use crate::text::write_text as write_sealed;
 use findings::Findings;
 use log_file::read;
 use machine_file::Written;
-use posicast_identify::recommend::Judgement;
+pub use posicast_identify::recommend::Judgement;
 use posicast_system::output::OutputFiles;
 use posicast_testbench::wave::write_text;
 use std::path::{Path, PathBuf};
@@ -103,6 +103,27 @@ pub fn identify(options: &Options) -> Result<Outcome<Document>, Failure> {
         failed,
         ..Outcome::passed(Document::new(&options.log, &findings, written)).beside(&outputs)
     })
+}
+
+/// Finds the modes in a log, without writing a file; returns the curves of its picture, too.
+///
+/// # Errors
+/// As [`identify`].
+pub fn with_curves(
+    log: &Path,
+    log_options: &LogOptions,
+    excitation: &LogExcitation,
+    judgement: &Judgement,
+) -> Result<(Outcome<Document>, Vec<Panel>), Failure> {
+    let reading = read(log, log_options)?;
+    let mut findings = Findings::of(&reading, excitation, judgement).map_err(|error| error.in_file(log))?;
+    findings.unit = findings.kind().unit();
+    let panels = pictures::panels(&findings, &reading.log);
+    let outcome = Outcome {
+        failed: findings.modes.is_empty().then(|| none_found(log, false)),
+        ..Outcome::passed(Document::new(log, &findings, None))
+    };
+    Ok((outcome, panels))
 }
 
 /// Writes a machine file with the modes of a log, found with default settings.

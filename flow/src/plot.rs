@@ -53,6 +53,16 @@ impl Curve {
         Self { name, points, look }
     }
 
+    /// Its name in the legend.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its points `(x, y)`, in order of x.
+    pub fn points(&self) -> &[(f64, f64)] {
+        &self.points
+    }
+
     /// A curve in a colour of its own.
     pub fn new(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
         Self::with_look(Look::Own, name, points)

@@ -331,7 +331,7 @@ fn installed_yosys(observer: &dyn Observer) -> Result<Option<Yosys>, Failure> {
         }
         Err(YosysError::Missing(_)) => {
             observer
-                .say("warning: Yosys is not installed: no estimate of area. Install it with scripts/install-tools.");
+                .say("warning: Yosys is not installed: no estimate of area. Install it (Debian: apt-get install --no-install-recommends yosys).");
             Ok(None)
         }
         Err(error) => Err(Failure::because(error)),

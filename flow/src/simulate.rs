@@ -8,7 +8,7 @@ use crate::failure::Failure;
 use crate::files::{ResultForm, one_document};
 use crate::hardware;
 use crate::machine;
-use crate::moves::Motion;
+use crate::moves::{self, Motion};
 use crate::observer::Observer;
 use crate::plot;
 use crate::text::UnitDocument;
@@ -85,6 +85,49 @@ pub fn simulate(options: &Options, observer: &dyn Observer) -> Result<Outcome<Si
         failed,
         ..Outcome::passed(Simulated::Command(document)).beside(&outputs)
     })
+}
+
+/// An axis that followed its command, with every sample.
+pub struct SimulatedMotion {
+    /// Name of the axis.
+    pub axis: String,
+    /// Value of one LSB of a word, in the axis's unit.
+    pub unit_per_lsb: f64,
+    /// The command words; those of a modulo axis include whole turns.
+    pub words: Vec<i64>,
+    /// The shaped words, the float design and the machine.
+    pub simulation: AxisSimulation,
+}
+
+/// Simulates a machine that was read already, which `path` names in messages: with the positions of `command`, by axis and sample in the
+/// axes' units, or with the default move of each axis.
+///
+/// # Errors
+/// [`Failure`] for a machine that cannot be designed, and for positions that its words do not hold.
+pub fn motion(
+    machine: &Machine,
+    path: &Path,
+    command: Option<&[Vec<f64>]>,
+    observer: &dyn Observer,
+) -> Result<Vec<SimulatedMotion>, Failure> {
+    let report = DesignReport::new(machine, path)?;
+    let shapers = hardware::shapers(machine, &report.hardware, path)?;
+    let design = report.design;
+    let words = match command {
+        Some(positions) => command::words_of(machine, &design, positions)?,
+        None => command::words(machine, &design, None, &moves::by_default(machine), observer)?,
+    };
+    let axes = simulate_axes(machine, &design, &shapers, &words)?;
+    let fraction = f64::from(machine.fixed_point.command_fraction).exp2();
+    let motions = machine.axes.iter().zip(words).zip(axes);
+    Ok(motions
+        .map(|((axis, words), simulation)| SimulatedMotion {
+            axis: axis.name.clone(),
+            unit_per_lsb: 1.0 / (axis.loop_counts_per_file_unit() * fraction),
+            words,
+            simulation,
+        })
+        .collect())
 }
 
 /// Simulates a path of two axes instead of writing a waveform.
