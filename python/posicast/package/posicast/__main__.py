@@ -1,0 +1,5 @@
+"""`python -m posicast` runs the command."""
+
+from ._program import main
+
+main()

@@ -1,0 +1,5 @@
+"""`python -m wavecmp` runs the command."""
+
+from ._program import main
+
+main()
