@@ -46,6 +46,7 @@ def test_simulation_is_the_model_and_the_command(tmp_path: Path) -> None:
     moved = posicast.simulate(machine, {"x": ramp, "y": 0 * ramp})
     x = moved["x"]
     assert x.command == pytest.approx(ramp, abs=x.command[-1] / x.command_words[-1])
+    assert x.shaped == pytest.approx(x.shaped_words * (x.command[-1] / x.command_words[-1]), rel=1e-12)
     assert np.array_equal(x.shaped_words, machine.shapers()["x"].taps().apply(x.command_words))
     assert np.abs(x.shaped_words - x.float_words).max() <= x.bound_lsb
     assert x.ringing < 0.05 * x.ringing_unshaped
