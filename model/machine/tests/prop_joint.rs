@@ -212,6 +212,13 @@ proptest! {
     }
 }
 
+/// The cascade of a smaller bound keeps a larger one too, so its band is never the wider.
+#[test]
+fn a_larger_bound_has_a_wider_band_between_two_seeds_of_order_4() {
+    let indices = [0.118, 0.1205, 0.1228, 0.1244, 0.1252, 0.127].map(|epsilon| optimum(4, epsilon).unwrap().index);
+    assert!(indices.is_sorted_by(|a, b| a < b), "{indices:?}");
+}
+
 #[test]
 fn three_impulses_for_a_far_multiple_are_refused_at_once() {
     let participants = [1e-9, 1e9].map(|hz| Participant {
