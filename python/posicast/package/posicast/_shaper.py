@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional, Tuple
 
 import numpy as np
 
 from . import _native
 from ._arrays import pairs, real, samples
-from ._errors import InputError
+from ._errors import InputError, MissingTool
 from ._taps import TapTable
 
 if TYPE_CHECKING:
@@ -246,7 +246,6 @@ class Shaper:
         if self._redesign is None:
             raise InputError(
                 "the rate, the coefficients and the method of digitising are those of the machine file",
-                file=None,
                 key="clock.sample_hz",
                 remedy="call taps() without arguments, or change `[clock]` and `[fixed_point]` of the machine file",
             )
@@ -326,8 +325,6 @@ class Shaper:
         try:
             import control
         except ImportError as error:
-            from ._errors import MissingTool
-
             raise MissingTool("to_lti needs the package control", remedy="pip install 'posicast[control]'") from error
         rate = self.sample_hz if sample_hz is None else float(sample_hz)
         numerator = self.to_fir(rate)

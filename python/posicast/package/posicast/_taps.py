@@ -105,22 +105,7 @@ class TapTable:
     def residual(self, frequency_hz: ArrayLike, damping: ArrayLike) -> NDArray[np.float64]:
         """Return the residual vibration that the integer table leaves, as a fraction of the unshaped one.
 
-        Parameters
-        ----------
-        frequency_hz
-            Undamped natural frequencies in Hz, any shape.
-        damping
-            Damping ratios in [0, 1), of a shape that broadcasts with the frequencies.
-
-        Returns
-        -------
-        numpy.ndarray
-            The residuals, in the shape of both.
-
-        Raises
-        ------
-        InputError
-            For values outside those ranges, and for shapes that do not fit.
+        Parameters, result and errors are those of :meth:`Shaper.residual`.
         """
         frequencies, dampings, shape = pairs(frequency_hz, damping)
         return self._native.residual(frequencies, dampings).reshape(shape)
