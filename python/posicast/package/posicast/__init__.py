@@ -18,6 +18,7 @@ from ._errors import CheckFailed, InputError, MissingTool, PosicastError
 from ._native import version as _version
 
 if TYPE_CHECKING:
+    from . import plot
     from ._design import Comparison, compare, design, optimal
     from ._identify import FoundMode, Identification, Panel, identify
     from ._machine import AxisMotion, Machine, simulate
@@ -73,6 +74,7 @@ __all__ = [
     "generate",
     "identify",
     "optimal",
+    "plot",
     "run",
     "schema",
     "simulate",
@@ -81,15 +83,17 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
+    from importlib import import_module
+
+    if name == "plot":
+        return import_module(f"{__name__}.plot")
     home = _HOMES.get(name)
     if home is None:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from importlib import import_module
-
     value = getattr(import_module(f"{__name__}.{home}"), name)
     globals()[name] = value
     return value
 
 
 def __dir__() -> "list[str]":
-    return sorted([*globals(), *_HOMES])
+    return sorted({*globals(), *_HOMES, "plot"})
