@@ -212,13 +212,6 @@ proptest! {
     }
 }
 
-/// The cascade of a smaller bound keeps a larger one too, so its band is never the wider.
-#[test]
-fn a_larger_bound_has_a_wider_band_between_two_seeds_of_order_4() {
-    let indices = [0.118, 0.1205, 0.1228, 0.1244, 0.1252, 0.127].map(|epsilon| optimum(4, epsilon).unwrap().index);
-    assert!(indices.is_sorted_by(|a, b| a < b), "{indices:?}");
-}
-
 #[test]
 fn three_impulses_for_a_far_multiple_are_refused_at_once() {
     let participants = [1e-9, 1e9].map(|hz| Participant {
@@ -249,16 +242,31 @@ fn a_single_mode_gets_the_shaper_of_its_own_kind() {
     assert!(found.is_time_optimal);
 }
 
+/// The cascade of a smaller bound keeps a larger one too, so its band is never the wider: a family of optima that is missing can show
+/// as a band that shrinks.
+fn band_of_vibrationless_grows(order: u32, steps: u32) {
+    let largest = EPSILON_MAX[order as usize - 1];
+    let bounds = (0..=steps).map(|k| largest * (0.002 / largest).powf(1.0 - f64::from(k) / f64::from(steps)));
+    let bands: Vec<(f64, f64)> = bounds
+        .map(|epsilon| (epsilon, optimum(order, epsilon).unwrap().index))
+        .collect();
+    for pair in bands.windows(2) {
+        assert!(pair[0].1 < pair[1].1, "order {order}: (bound, band) {pair:?}");
+    }
+}
+
+#[test]
+fn long_the_band_of_vibrationless_grows_with_the_bound() {
+    for order in 2..=ORDER_MAX {
+        band_of_vibrationless_grows(order, 400);
+    }
+}
+
 #[test]
 fn the_band_of_vibrationless_grows_with_the_bound() {
     for order in 2..=ORDER_MAX {
         let largest = EPSILON_MAX[order as usize - 1];
-        let bounds = (0..=16).map(|k| largest * (0.004f64 / largest).powf(1.0 - f64::from(k) / 16.0));
-        let indices: Vec<f64> = bounds.map(|epsilon| optimum(order, epsilon).unwrap().index).collect();
-        assert!(
-            indices.windows(2).all(|pair| pair[0] < pair[1]),
-            "order {order}: {indices:?}"
-        );
+        band_of_vibrationless_grows(order, 32);
         assert!(optimum(order, largest * 1.01).is_err());
     }
     for (order, epsilon) in [
