@@ -29,9 +29,9 @@ def executed(path: Path) -> Any:
 
 
 def printed(notebook: Any) -> List[str]:
-    """Return what each cell of code prints, without the pictures."""
+    """Return what each cell of code prints, without pictures and warnings."""
     cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
-    return ["".join(output.text for output in cell.outputs if output.output_type == "stream") for cell in cells]
+    return ["".join(output.text for output in cell.outputs if output.get("name") == "stdout") for cell in cells]
 
 
 if __name__ == "__main__":

@@ -166,6 +166,8 @@ def test_two_threads_at_once() -> None:
 
 LONG = """
 import posicast, wavecmp, signal, threading, os, time
+# A shell starts jobs in the background with Ctrl-C ignored.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 threading.Timer({pause}, os.kill, (os.getpid(), signal.SIGINT)).start()
 begun = time.monotonic()
 try:
