@@ -62,7 +62,7 @@ pub enum BitstreamError {
         available: usize,
     },
     /// Programs are not installed.
-    #[error("{}", .0.iter().map(|name| format!("{name}: not found; a bitstream needs it: scripts/install-tools bitstream")).collect::<Vec<_>>().join("\n"))]
+    #[error("{}", .0.iter().map(|name| format!("{name}: not found; a bitstream needs it: `posicast doctor` says how to install it")).collect::<Vec<_>>().join("\n"))]
     Missing(Vec<&'static str>),
     /// A program failed.
     #[error("{tool} failed while {doing}:\n{last_lines}")]

@@ -159,7 +159,7 @@ fn other_versions(found: &[String; 2], tested: [&str; 2]) -> Option<String> {
         .all(|(found, tested)| found.starts_with(tested));
     (!is_tested).then(|| {
         format!(
-            "the programs are {}; posicast is tested with {}, which `scripts/install-tools bitstream` installs on Debian 12",
+            "the programs are {}; posicast is tested with {}",
             found.join(" and "),
             tested.join(" and ")
         )

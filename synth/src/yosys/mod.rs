@@ -112,7 +112,7 @@ impl Estimate {
 pub enum YosysError {
     /// Yosys is not installed.
     #[error(
-        "{}: not found; an estimate needs Yosys: `apt-get install --no-install-recommends yosys`, or scripts/install-tools",
+        "{}: not found; an estimate needs Yosys: `apt-get install --no-install-recommends yosys`",
         .0.display()
     )]
     Missing(PathBuf),
