@@ -30,7 +30,7 @@ use posicast_blocks::component::Component;
 use posicast_blocks::composition::Composed;
 use posicast_blocks::segments::Entry;
 use posicast_blocks::stage::StageConfig;
-use posicast_blocks::{Direction, Port, StepError};
+use posicast_blocks::{ClockedBlock, Direction, Moore, OutputKind, Port, StepError};
 use posicast_machine::plant::axis::{AbsoluteFault, AxisPlant, DrivePins, EncoderPins};
 
 use posicast_testbench::Error;
@@ -173,16 +173,21 @@ fn stopped(clock: u64) -> impl Fn(StepError) -> Error {
 struct Beside {
     lockstep: Lockstep,
     device: Box<dyn Device>,
+    /// Most clocks at once: an output that counts changes in each.
+    most: u64,
 }
 
 impl Beside {
-    fn new(ports: &[Port], device: Box<dyn Device>) -> Result<Self, Error> {
+    fn new(model: &Composed, device: Box<dyn Device>) -> Result<Self, Error> {
+        let ports = model.ports();
+        let counts = |port: &Port| model.output_kind(&port.name) == OutputKind::Counter;
         let stage = [Instance::whole("stage", "with its machine", ports)];
         // The clocks are those of the bench, so none end it.
         let options = LockstepOptions::cycles(u64::MAX);
         Ok(Self {
             lockstep: Lockstep::new(ports, device.ports(), &stage, &options)?,
             device,
+            most: if ports.iter().any(counts) { 1 } else { u64::MAX },
         })
     }
 }
@@ -235,13 +240,13 @@ impl StageBench {
             )));
         }
         let ports = component.composition().ports();
-        let compared = device.map(|device| Beside::new(ports, device)).transpose()?;
         let names = |direction| -> Vec<String> {
             let ports = ports.iter().filter(|port| port.direction == direction);
             ports.map(|port| port.name.clone()).collect()
         };
         let (input_names, output_names) = (names(Direction::Input), names(Direction::Output));
         let model = component.model(seed);
+        let compared = device.map(|device| Beside::new(&model, device)).transpose()?;
         let place = |names: &[String], name: &str| {
             let found = names.iter().position(|other| other == name);
             found.ok_or_else(|| Error::Unlike(format!("the stage has no port `{name}`")))
@@ -500,19 +505,23 @@ impl StageBench {
                     (self.inputs[a], self.inputs[b]) = (pins.a.into(), pins.b.into());
                 }
             }
+            let quiet = self.plants.iter().map(AxisPlant::quiet_clocks);
+            let most = quiet.min().unwrap_or(1).clamp(1, unscheduled.min(end - self.now));
             let passed = match &mut self.compared {
-                Some(Beside { lockstep, device }) => {
-                    lockstep.clock(&mut self.model, device.as_mut(), &mut self.inputs)?;
+                Some(Beside {
+                    lockstep,
+                    device,
+                    most: at_once,
+                }) => {
+                    let most = most.min(*at_once);
+                    let passed = lockstep.hold(&mut self.model, device.as_mut(), &mut self.inputs, most)?;
                     self.outputs.copy_from_slice(lockstep.expected());
-                    1
+                    passed
                 }
-                None => {
-                    let quiet = self.plants.iter().map(AxisPlant::quiet_clocks);
-                    let most = quiet.min().unwrap_or(1).clamp(1, unscheduled.min(end - self.now));
-                    self.model
-                        .hold(&self.inputs, most, &mut self.outputs)
-                        .map_err(stopped(self.now))?
-                }
+                None => self
+                    .model
+                    .hold(&self.inputs, most, &mut self.outputs)
+                    .map_err(stopped(self.now))?,
             };
             self.pins.pass(self.now, &self.inputs, &self.outputs, &self.plants);
             if self.outputs[self.tick] != 0 {

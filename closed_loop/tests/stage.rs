@@ -1,12 +1,13 @@
 //! The stage of the example machine with its simulated plants: a move over the bus, in the model and in lock step, and what its
 //! datasheet promises.
 
-use posicast_blocks::Direction;
 use posicast_blocks::component::Component;
 use posicast_blocks::segments::{self, Entry, NOTIFY};
+use posicast_blocks::{Direction, Port, StepError};
 use posicast_closed_loop::stage_bench::{StageBench, state};
 use posicast_machine::machine_file::Machine;
 use posicast_machine::plant::axis::PlantOptions;
+use posicast_testbench::lockstep::{Device, TwoValued};
 
 use crate::support::{XY, bench, machine, queue_move, stage, verilated};
 
@@ -48,6 +49,52 @@ fn lockstep_a_move_from_reset_to_standstill() {
     let mut bench = bench(&machine, &stage, &PlantOptions::default(), Some(verilated(&stage)), 1);
     move_both(&machine, &mut bench, 200);
     assert_eq!(bench.mismatches(), (0, None));
+}
+
+/// A model as a device, whose first output is inverted in one clock.
+struct OneWrongValue {
+    device: TwoValued,
+    clock: u64,
+    wrong: u64,
+}
+
+impl Device for OneWrongValue {
+    fn ports(&self) -> &[Port] {
+        self.device.ports()
+    }
+
+    fn step(&mut self, inputs: &[u64], outputs: &mut [u64], unknown: &mut [u64]) -> Result<(), StepError> {
+        self.device.step(inputs, outputs, unknown)?;
+        outputs[0] ^= u64::from(self.clock == self.wrong);
+        self.clock += 1;
+        Ok(())
+    }
+}
+
+#[test]
+fn lockstep_one_wrong_value_is_found_in_its_clock() {
+    let machine = machine(XY);
+    let stage = stage(&machine);
+    let model = || Component::stage(&stage.config).unwrap().model(1);
+    // In the reset, at the tick and just after it, and within the quiet clocks before the next tick.
+    for wrong in [1, 5_000, 5_003, 9_321] {
+        let device = OneWrongValue {
+            device: TwoValued(Box::new(model())),
+            clock: 0,
+            wrong,
+        };
+        let mut bench = bench(&machine, &stage, &PlantOptions::default(), Some(Box::new(device)), 1);
+        bench.clocks(20_000).unwrap();
+        let (differs, first) = bench.mismatches();
+        let first = first.unwrap();
+        assert_eq!((differs, first.time), (1, wrong));
+        let text = first.to_string();
+        let shown: Vec<&str> = text.lines().nth(1).unwrap().split_whitespace().skip(1).collect();
+        let around: Vec<String> = (wrong.saturating_sub(6)..=wrong + 6)
+            .map(|clock| clock.to_string())
+            .collect();
+        assert_eq!(shown, around);
+    }
 }
 
 const DATASHEET: &str = include_str!("../../docs/stage.md");

@@ -43,6 +43,27 @@ pub trait Device {
     /// # Errors
     /// [`StepError`] where the simulator stops.
     fn step(&mut self, inputs: &[u64], outputs: &mut [u64], unknown: &mut [u64]) -> Result<(), StepError>;
+
+    /// Simulates clocks with the same inputs up to the first one in which the outputs are not `expected`, or `clocks` of them. Returns how
+    /// many were as expected, also where the simulator stops; `outputs` and `unknown` are those of the one that was not.
+    fn hold(
+        &mut self,
+        inputs: &[u64],
+        expected: &[u64],
+        clocks: u64,
+        outputs: &mut [u64],
+        unknown: &mut [u64],
+    ) -> (u64, Result<(), StepError>) {
+        for equal in 0..clocks {
+            if let Err(error) = self.step(inputs, outputs, unknown) {
+                return (equal, Err(error));
+            }
+            if outputs != expected || unknown.iter().any(|bits| *bits != 0) {
+                return (equal, Ok(()));
+            }
+        }
+        (clocks, Ok(()))
+    }
 }
 
 /// A device with only zeros and ones, such as RustHDL's simulator or another model.
@@ -67,6 +88,18 @@ impl Device for Verilated {
     fn step(&mut self, inputs: &[u64], outputs: &mut [u64], unknown: &mut [u64]) -> Result<(), StepError> {
         unknown.fill(0);
         ClockedBlock::step(self, inputs, outputs)
+    }
+
+    fn hold(
+        &mut self,
+        inputs: &[u64],
+        expected: &[u64],
+        clocks: u64,
+        outputs: &mut [u64],
+        unknown: &mut [u64],
+    ) -> (u64, Result<(), StepError>) {
+        unknown.fill(0);
+        Verilated::hold(self, inputs, expected, clocks, outputs)
     }
 }
 
@@ -197,6 +230,7 @@ pub struct Lockstep {
     unknown: Vec<u64>,
     /// Values of the device's ports, in the device's own order.
     device_inputs: Vec<u64>,
+    device_expected: Vec<u64>,
     device_outputs: Vec<u64>,
     device_unknown: Vec<u64>,
 }
@@ -221,6 +255,7 @@ impl Lockstep {
             actual: outputs.clone(),
             unknown: outputs.clone(),
             device_inputs: vec![0; wiring.inputs.len()],
+            device_expected: outputs.clone(),
             device_outputs: outputs.clone(),
             device_unknown: outputs,
             wiring,
@@ -239,22 +274,71 @@ impl Lockstep {
     ) -> Result<(), Error> {
         let time = self.time;
         let failed = |source| Error::Step { clock: time, source };
-        for (input, port) in inputs.iter_mut().zip(&self.wiring.inputs) {
-            *input &= port.mask;
-            self.device_inputs[port.device] = *input;
-        }
+        self.take(inputs);
         model.step(inputs, &mut self.expected).map_err(failed)?;
         device
             .step(&self.device_inputs, &mut self.device_outputs, &mut self.device_unknown)
             .map_err(failed)?;
+        self.compare(inputs);
+        Ok(())
+    }
+
+    /// Clocks of both with the same inputs, at most `clocks`, for as long as the outputs of the model stay as they are; returns how many.
+    /// Every output is compared in each of them. The model must have no output that counts. Of `inputs`, as for [`clock`](Self::clock).
+    ///
+    /// # Errors
+    /// [`Error::Step`] where a simulator stops.
+    pub fn hold(
+        &mut self,
+        model: &mut Composed,
+        device: &mut dyn Device,
+        inputs: &mut [u64],
+        clocks: u64,
+    ) -> Result<u64, Error> {
+        let failed = |clock| move |source| Error::Step { clock, source };
+        self.take(inputs);
+        let passed = model
+            .hold(inputs, clocks, &mut self.expected)
+            .map_err(failed(self.time))?;
+        for (port, expected) in self.wiring.outputs.iter().zip(&self.expected) {
+            self.device_expected[port.device] = *expected;
+        }
+        let end = self.time + passed;
+        while self.time < end {
+            let (equal, result) = device.hold(
+                &self.device_inputs,
+                &self.device_expected,
+                end - self.time,
+                &mut self.device_outputs,
+                &mut self.device_unknown,
+            );
+            self.comparison.equal(self.time, equal, inputs, &self.expected);
+            self.time += equal;
+            result.map_err(failed(self.time))?;
+            if self.time < end {
+                self.compare(inputs);
+            }
+        }
+        Ok(passed)
+    }
+
+    /// Clears bits beyond a port's width, and sets the device's inputs.
+    fn take(&mut self, inputs: &mut [u64]) {
+        for (input, port) in inputs.iter_mut().zip(&self.wiring.inputs) {
+            *input &= port.mask;
+            self.device_inputs[port.device] = *input;
+        }
+    }
+
+    /// Compares the clock that both have simulated.
+    fn compare(&mut self, inputs: &[u64]) {
         for (at, port) in self.wiring.outputs.iter().enumerate() {
             self.actual[at] = self.device_outputs[port.device];
             self.unknown[at] = self.device_unknown[port.device];
         }
         self.comparison
-            .clock(time, inputs, &self.expected, &self.actual, &self.unknown);
+            .clock(self.time, inputs, &self.expected, &self.actual, &self.unknown);
         self.time += 1;
-        Ok(())
     }
 
     /// Outputs of the model in the last clock.
@@ -380,6 +464,20 @@ impl Comparison {
                 watched.first = Some(self.recent.opened_at(time, output.unwrap_or(0)));
             }
         }
+    }
+
+    /// This many clocks in which the device showed what the model did.
+    fn equal(&mut self, time: u64, clocks: u64, inputs: &[u64], expected: &[u64]) {
+        let none = vec![0; expected.len()];
+        let (kept, end) = (self.recent.clocks(), time + clocks);
+        for watched in &mut self.watched {
+            watched.samples += clocks * u64::from(watched.valid.is_some_and(|at| expected[at] == 1));
+            if let Some(first) = &mut watched.first {
+                (time..end.min(time + kept)).for_each(|time| first.extend(time, inputs, expected, expected, &none));
+            }
+        }
+        let latest = time.max(end.saturating_sub(kept))..end;
+        latest.for_each(|time| self.recent.push(time, inputs, expected, expected, &none));
     }
 
     fn report(&self, cycles: u64) -> LockstepReport {

@@ -57,6 +57,11 @@ impl Window {
         }
     }
 
+    /// Number of clocks that are kept.
+    pub(super) fn clocks(&self) -> u64 {
+        self.rows.len() as u64
+    }
+
     /// Stores a clock and drops the oldest one.
     pub(super) fn push(&mut self, time: u64, inputs: &[u64], expected: &[u64], actual: &[u64], unknown: &[u64]) {
         self.rows[self.next].copy_from(time, inputs, expected, actual, unknown);

@@ -20,12 +20,14 @@ type Free = unsafe extern "C" fn(*mut c_void);
 type Message = unsafe extern "C" fn(*mut c_void) -> *const c_char;
 type WriteCoverage = unsafe extern "C" fn(*mut c_void, *const c_char) -> c_int;
 type Run = unsafe extern "C" fn(*mut c_void, *const u64, *mut u64, u64) -> c_int;
+type Hold = unsafe extern "C" fn(*mut c_void, *const u64, *const u64, u64, *mut u64, *mut u64) -> c_int;
 
 /// A simulation in a loaded shared object.
 #[derive(Debug)]
 pub(super) struct Simulation {
     state: NonNull<c_void>,
     run: Run,
+    hold: Hold,
     free: Free,
     message: Message,
     /// Function of a simulation that was built to count.
@@ -48,15 +50,16 @@ impl Simulation {
         let seed = ((seed ^ (seed >> 32)) as u32 & 0x7fff_fffe) | 1;
         // SAFETY: the object's initialisers are those of Verilator's runtime library; the types are those of the module
         // doc.
-        let (library, new, free, message, run, coverage) = unsafe {
+        let (library, new, free, message, run, hold, coverage) = unsafe {
             let library = Library::new(object).map_err(|cause| refuse(cause.to_string()))?;
             let missing = |cause: libloading::Error| refuse(cause.to_string());
             let new: New = *library.get(b"posicast_new\0").map_err(missing)?;
             let free: Free = *library.get(b"posicast_free\0").map_err(missing)?;
             let message: Message = *library.get(b"posicast_message\0").map_err(missing)?;
             let run: Run = *library.get(b"posicast_run\0").map_err(missing)?;
+            let hold: Hold = *library.get(b"posicast_hold\0").map_err(missing)?;
             let coverage = library.get(b"posicast_coverage\0").ok().map(|found| *found);
-            (library, new, free, message, run, coverage)
+            (library, new, free, message, run, hold, coverage)
         };
         // SAFETY: `new` takes any seed and returns a simulation or null.
         let state = NonNull::new(unsafe { new(seed) });
@@ -64,6 +67,7 @@ impl Simulation {
         Ok(Self {
             state,
             run,
+            hold,
             free,
             message,
             coverage,
@@ -102,6 +106,45 @@ impl Simulation {
                 clocks as u64,
             )
         };
+        self.answer(failed)
+    }
+
+    /// Simulates clocks with the same inputs up to the first one in which an output is not `expected`, or `clocks` of them. Returns how
+    /// many were as expected, also where the simulation stops; `outputs` are those of the one that was not.
+    pub(super) fn hold(
+        &mut self,
+        inputs: &[u64],
+        expected: &[u64],
+        clocks: u64,
+        outputs: &mut [u64],
+    ) -> (u64, Result<(), StepError>) {
+        if (inputs.len(), expected.len(), outputs.len()) != (self.inputs, self.outputs, self.outputs) {
+            let (inputs, outputs) = (self.inputs, self.outputs);
+            return (
+                0,
+                Err(StepError(format!(
+                    "a clock has {inputs} input and {outputs} output values"
+                ))),
+            );
+        }
+        let mut equal = 0;
+        // SAFETY: `state` came from this library's `posicast_new` and is not shared; the harness reads one row of inputs and of expected
+        // outputs, and writes at most one row of outputs and `equal`.
+        let failed = unsafe {
+            (self.hold)(
+                self.state.as_ptr(),
+                inputs.as_ptr(),
+                expected.as_ptr(),
+                clocks,
+                outputs.as_mut_ptr(),
+                &raw mut equal,
+            )
+        };
+        (equal, self.answer(failed))
+    }
+
+    /// The error of a call that returned this.
+    fn answer(&self, failed: c_int) -> Result<(), StepError> {
         if failed == 0 {
             return Ok(());
         }

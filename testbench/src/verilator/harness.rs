@@ -45,10 +45,12 @@ harness_headers.h.gch:
 /// Name of the headers' compiled form in a build folder.
 pub(super) const COMPILED_HEADERS: &str = "harness_headers.h.gch";
 
-/// The harness; `@INPUTS@` and `@OUTPUTS@` become one assignment per port.
+/// The harness; `@INPUTS@` and `@OUTPUTS@` become one assignment per port, `@EQUAL@` one comparison per output.
 pub(super) const TEMPLATE: &str = r#"#include "Vdevice.h"
 
 #define EXPORT extern "C" __attribute__((visibility("default")))
+
+static const uint64_t INPUTS = @INPUT_COUNT@, OUTPUTS = @OUTPUT_COUNT@;
 
 static thread_local std::string stopped;
 
@@ -87,17 +89,27 @@ EXPORT void posicast_free(Simulation* simulation) {
 
 EXPORT const char* posicast_message(Simulation* simulation) { return simulation->message.c_str(); }
 
-EXPORT int posicast_run(Simulation* simulation, const uint64_t* in, uint64_t* out, uint64_t clocks) {
-    Vdevice& device = *simulation->device;
+static void fall(Vdevice& device) {
+    device.clk = 0;
+    device.eval();
+}
+
+static void rise(Vdevice& device) {
+    device.clk = 1;
+    device.eval();
+    if (VL_UNLIKELY(!stopped.empty())) throw std::runtime_error(stopped);
+}
+
+static void set(Vdevice& device, const uint64_t* in) {
+@INPUTS@}
+
+static void get(const Vdevice& device, uint64_t* out) {
+@OUTPUTS@}
+
+template <typename Work> static int guarded(Simulation* simulation, Work work) {
     stopped.clear();
     try {
-        for (; clocks; --clocks) {
-            device.clk = 0;
-@INPUTS@            device.eval();
-@OUTPUTS@            device.clk = 1;
-            device.eval();
-            if (VL_UNLIKELY(!stopped.empty())) throw std::runtime_error(stopped);
-        }
+        work(*simulation->device);
     } catch (const std::exception& cause) {
         simulation->message = cause.what();
         return 1;
@@ -106,6 +118,35 @@ EXPORT int posicast_run(Simulation* simulation, const uint64_t* in, uint64_t* ou
         return 1;
     }
     return 0;
+}
+
+EXPORT int posicast_run(Simulation* simulation, const uint64_t* in, uint64_t* out, uint64_t clocks) {
+    return guarded(simulation, [&](Vdevice& device) {
+        for (; clocks; --clocks, in += INPUTS, out += OUTPUTS) {
+            set(device, in);
+            fall(device);
+            get(device, out);
+            rise(device);
+        }
+    });
+}
+
+EXPORT int posicast_hold(Simulation* simulation, const uint64_t* in, const uint64_t* expected, uint64_t clocks, uint64_t* out,
+                         uint64_t* equal) {
+    *equal = 0;
+    return guarded(simulation, [&](Vdevice& device) {
+        set(device, in);
+        for (bool same = true; same && *equal < clocks;) {
+            fall(device);
+            same = true@EQUAL@;
+            if (same) {
+                ++*equal;
+            } else {
+                get(device, out);
+            }
+            rise(device);
+        }
+    });
 }
 
 int main() { return 0; }
@@ -228,19 +269,33 @@ pub(super) fn members(source: &VerilogSource<'_>, declared: &[Declared]) -> Resu
 
 /// The harness for these ports.
 pub(super) fn source_text(ports: &[Port], members: &[String]) -> String {
-    let (mut inputs, mut outputs) = (String::new(), String::new());
+    let (mut inputs, mut outputs, mut equal) = (String::new(), String::new(), String::new());
+    let (mut input, mut output) = (0, 0);
     for (port, member) in ports.iter().zip(members) {
-        let indent = "            ";
         // Writing to a `String` cannot fail.
         let _ = match port.direction {
             Direction::Input => {
                 let mask = u64::MAX >> (64 - port.width);
-                writeln!(inputs, "{indent}device.{member} = *in++ & UINT64_C({mask:#x});")
+                input += 1;
+                writeln!(inputs, "    device.{member} = in[{}] & UINT64_C({mask:#x});", input - 1)
             }
-            Direction::Output => writeln!(outputs, "{indent}*out++ = device.{member};"),
+            Direction::Output => {
+                output += 1;
+                let _ = writeln!(outputs, "    out[{}] = device.{member};", output - 1);
+                write!(
+                    equal,
+                    "\n                && device.{member} == expected[{}]",
+                    output - 1
+                )
+            }
         };
     }
-    TEMPLATE.replace("@INPUTS@", &inputs).replace("@OUTPUTS@", &outputs)
+    TEMPLATE
+        .replace("@INPUTS@", &inputs)
+        .replace("@OUTPUTS@", &outputs)
+        .replace("@EQUAL@", &equal)
+        .replace("@INPUT_COUNT@", &input.to_string())
+        .replace("@OUTPUT_COUNT@", &output.to_string())
 }
 
 #[cfg(test)]

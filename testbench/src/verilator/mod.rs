@@ -164,6 +164,19 @@ impl Verilated {
         self.patience.during(|| self.simulation.run(inputs, outputs))
     }
 
+    /// Simulates clocks with the same inputs up to the first one in which an output is not `expected`, or `clocks` of them. Returns how
+    /// many were as expected, also where the Verilog stops the simulation; `outputs` are those of the one that was not.
+    pub(crate) fn hold(
+        &mut self,
+        inputs: &[u64],
+        expected: &[u64],
+        clocks: u64,
+        outputs: &mut [u64],
+    ) -> (u64, Result<(), StepError>) {
+        self.patience
+            .during(|| self.simulation.hold(inputs, expected, clocks, outputs))
+    }
+
     /// Writes the counts since the start into a file, in the format of `verilator_coverage`.
     ///
     /// # Errors

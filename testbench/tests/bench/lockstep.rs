@@ -77,6 +77,28 @@ moving          0  0  1   0   0   1     0     0     1     0     0     1      0";
 }
 
 #[test]
+fn lockstep_a_held_device_stops_at_the_first_difference() {
+    let devices: [Box<dyn Device>; 2] = [
+        Box::new(verilated(COUNTER)),
+        Box::new(TwoValued(Box::new(Counter::new()))),
+    ];
+    for mut device in devices {
+        let (mut outputs, mut unknown) = ([0; 2], [0; 2]);
+        let mut hold = |inputs: [u64; 3], expected: [u64; 2]| {
+            let (equal, result) = device.hold(&inputs, &expected, 1000, &mut outputs, &mut unknown);
+            result.unwrap();
+            (equal, outputs)
+        };
+        assert_eq!(hold([1, 0, 0], [0, 0]).0, 1000);
+        assert_eq!(hold([0, 0, 5], [0, 0]).0, 1000);
+        // The count is 0 in the first clock, and 5 in the second one, which is simulated too.
+        assert_eq!(hold([0, 1, 5], [0, 1]), (1, [5, 1]));
+        assert_eq!(hold([0, 0, 5], [10, 0]).0, 1000);
+        assert_eq!(hold([0, 0, 5], [10, 1]), (0, [10, 0]));
+    }
+}
+
+#[test]
 fn lockstep_ends_early_when_everything_is_wrong() {
     let mut device = verilated(&COUNTER.replace("assign moving =", "assign moving = !"));
     let instances = [Instance::whole("counter", "one", &counter_ports())];
