@@ -1,7 +1,7 @@
 //! `posicast run`: goes the whole way from the machine file to the verdict.
 //!
-//! The steps are: design → quantise → generate → lock step → waveforms compared → plant measured → estimated → reported. Later steps use
-//! the decisions of earlier ones: the tap table is made once. The folder appears at the end, also after a failed check: it contains all
+//! The steps are: design → quantise → generate → lock step, waveforms compared, plant measured, estimated, all at once → reported. Later
+//! steps use the decisions of earlier ones: the tap table is made once. The folder appears at the end, also after a failed check: it contains all
 //! files that `generate` writes, and the evidence.
 
 mod advice;
@@ -39,15 +39,15 @@ use posicast_closed_loop::stage_run::Circle;
 use posicast_machine::compare::{DEFAULT_BAND, compare};
 use posicast_machine::machine_file::Machine;
 use posicast_machine::motion::AxisMove;
-use posicast_machine::simulation::AxisSimulation;
 use posicast_synth::package::Package;
 use posicast_synth::yosys::{Estimate, Yosys, YosysError};
 use posicast_testbench::blocks::{Block, Sources};
-use posicast_testbench::lockstep::report::LockstepReport;
 use posicast_testbench::shaper::MachineShapers;
 use report::RunReport;
+use std::panic::resume_unwind;
 use std::path::PathBuf;
-use waves::Waves;
+use std::sync::OnceLock;
+use std::thread::{self, ScopedJoinHandle};
 
 pub use advice::Advice;
 pub use checks::Check;
@@ -85,12 +85,49 @@ pub fn run(options: &Options, observer: &dyn Observer) -> Result<Outcome<Documen
         sources: Sources::found(files),
     };
     rtl.require_tools(plan.simulator)?;
-    let (lockstep, waves) = compare_shapers(options, (&design, &plan), &rtl, &axes, &mut package, observer)?;
-    let estimate = estimate(&plan, machine, rtl.sources.files(), observer)?;
-    let closed_loop = run_stage(options, (machine, &plan), &rtl, observer)?;
-    let inline = inline::run((&design, path), &plan, &rtl, options.seed, observer)?;
+    let shaper_sources = rtl.sources.reached_by(rtl.top).map_err(bench::failure)?;
+    let shapers = waves::Job {
+        machine,
+        top: rtl.top,
+        sources: &shaper_sources,
+        simulator: plan.simulator,
+        seed: options.seed,
+        observer,
+    };
+    let check = || {
+        let lint = checks::lint(plan.simulator, &rtl.sources, &rtl.tops())?;
+        let estimate = estimate(&plan, machine, rtl.sources.files(), observer)?;
+        Ok((lint, estimate, compare(machine, DEFAULT_BAND)))
+    };
+    // None of these needs the result of another. The stage beside its Verilog takes longest, on one thread; so on two cores a second thread
+    // does the rest, and is free for the stage's other runs then.
+    let is_free = OnceLock::new();
+    let has_cores = thread::available_parallelism().is_ok_and(|cores| cores.get() > 2);
+    let (looped, lockstep, waves, checked) = thread::scope(|scope| {
+        let looped = scope.spawn(|| {
+            let closed_loop = run_stage(options, (machine, &plan), &rtl, &is_free, observer)?;
+            Ok((
+                closed_loop,
+                inline::run((&design, path), &plan, &rtl, options.seed, observer)?,
+            ))
+        });
+        let frees = Frees(&is_free);
+        if has_cores {
+            frees.now();
+        }
+        let checked = (has_cores || built.stage.is_none()).then(|| scope.spawn(check));
+        let lockstep = shapers.lockstep(options.cycles);
+        let waves = shapers.waves(&mut package, &design.design, &axes);
+        let checked = checked.map_or_else(check, joined);
+        frees.now();
+        (joined(looped), lockstep, waves, checked)
+    });
+    // Where several fail, the error is that of the first in this order.
+    let (lockstep, waves) = (lockstep?, waves?);
+    let (lint, estimate, kinds) = checked?;
+    let (closed_loop, inline) = looped?;
 
-    let mut checks = Vec::from_iter(checks::lint(plan.simulator, &rtl.sources, &rtl.tops())?);
+    let mut checks = Vec::from_iter(lint);
     checks.push(checks::moves(machine, &axes));
     checks.extend(checks::all(plan.simulator, machine, &design.design, &lockstep, &waves));
     checks.extend(checks::link(built.link.as_ref()));
@@ -98,7 +135,6 @@ pub fn run(options: &Options, observer: &dyn Observer) -> Result<Outcome<Documen
     checks.extend(estimate.as_ref().and_then(|e| checks::fits(machine, e)));
     checks.extend(closed_loop.iter().flat_map(ClosedLoop::checks));
     checks.extend(inline.iter().flat_map(InlineLoop::checks));
-    let kinds = compare(machine, DEFAULT_BAND);
     let report = RunReport {
         machine,
         design: &design,
@@ -246,32 +282,33 @@ fn opened(options: &Options, file: &MachineFile, plan: &Plan) -> Result<Package,
     Ok(package)
 }
 
-/// The shapers in lock step with their model, and the waveforms of the move.
-fn compare_shapers(
-    options: &Options,
-    (design, plan): (&DesignReport<'_>, &Plan),
-    rtl: &Rtl<'_>,
-    axes: &[AxisSimulation],
-    package: &mut Package,
-    observer: &dyn Observer,
-) -> Result<(LockstepReport, Waves), Failure> {
-    let job = waves::Job {
-        machine: design.machine,
-        top: rtl.top,
-        sources: &rtl.sources.reached_by(rtl.top).map_err(bench::failure)?,
-        simulator: plan.simulator,
-        seed: options.seed,
-        observer,
-    };
-    let lockstep = job.lockstep(options.cycles)?;
-    Ok((lockstep, job.waves(package, &design.design, axes)?))
+/// Lets a second thread begin with the closed loop: when it is told, and in any case at its end.
+struct Frees<'a>(&'a OnceLock<()>);
+
+impl Frees<'_> {
+    fn now(&self) {
+        // It may be free already.
+        let _ = self.0.set(());
+    }
 }
 
-/// The stage on its simulated machine.
+impl Drop for Frees<'_> {
+    fn drop(&mut self) {
+        self.now();
+    }
+}
+
+/// The result of a thread.
+fn joined<T>(thread: ScopedJoinHandle<'_, Result<T, Failure>>) -> Result<T, Failure> {
+    thread.join().unwrap_or_else(|panic| resume_unwind(panic))
+}
+
+/// The stage on its simulated machine; `second` is set when a second thread may work.
 fn run_stage<'a>(
     options: &'a Options,
     (machine, plan): (&'a Machine, &'a Plan),
     rtl: &'a Rtl<'a>,
+    second: &OnceLock<()>,
     observer: &dyn Observer,
 ) -> Result<Option<ClosedLoop<'a>>, Failure> {
     let built = rtl.built;
@@ -287,7 +324,7 @@ fn run_stage<'a>(
             simulator: plan.simulator,
             seed: options.seed,
         };
-        job.run(observer)
+        job.run(second, observer)
     });
     closed_loop.transpose()
 }

@@ -24,7 +24,7 @@ use posicast_machine::motion::AxisMove;
 use posicast_testbench::blocks::Sources;
 use posicast_testbench::lockstep::Device;
 use std::path::Path;
-use std::sync::Mutex;
+use std::sync::{Mutex, OnceLock};
 use std::thread;
 
 pub use contours::{FollowedPath, FollowedRow, PathDistance};
@@ -33,8 +33,6 @@ pub use report::{Compensation, DrivenCircle, MovedAxis, PathError, StageFigures,
 
 use contours::Contours;
 
-/// Number of simultaneous runs: one may be Verilator's, which takes as long as the others together.
-const AT_ONCE: usize = 2;
 /// Frequency factors of machines for which the shapers were not designed.
 const SLOWER: f64 = 0.9;
 const FASTER: f64 = 1.1;
@@ -121,8 +119,8 @@ pub(crate) struct Job<'a> {
 }
 
 impl<'a> Job<'a> {
-    /// Runs everything.
-    pub(crate) fn run(&self, observer: &dyn Observer) -> Result<ClosedLoop<'a>, Failure> {
+    /// Runs everything; `second` is set when a second thread may work.
+    pub(crate) fn run(&self, second: &OnceLock<()>, observer: &dyn Observer) -> Result<ClosedLoop<'a>, Failure> {
         let refused = |error| failure(error, self.path);
         let own = StageRun::with_moves(self.machine, &self.stage.of_machine.config, self.seed, self.moves)
             .map_err(refused)?;
@@ -158,7 +156,7 @@ impl<'a> Job<'a> {
         if self.machine.axes.iter().any(|axis| axis.error_table.is_some()) {
             tasks.push(Task::MoveUncompensated);
         }
-        let done = self.all(&own, circle.as_ref().ok().copied(), &tasks, observer);
+        let done = self.all(&own, circle.as_ref().ok().copied(), &tasks, second, observer);
         let done = done.map_err(refused)?;
 
         let (mut compared, mut moves, mut circles) = (None, Vec::new(), Vec::new());
@@ -228,12 +226,14 @@ impl<'a> Job<'a> {
         })
     }
 
-    /// Runs these tasks, some at a time, and returns their results in order.
+    /// Runs these tasks on two threads, the second one from when it may work, and returns their results in order. Two suffice: Verilator's
+    /// takes as long as the others together.
     fn all(
         &self,
         own: &StageRun<'_>,
         circle: Option<Circle>,
         tasks: &[Task<'_>],
+        second: &OnceLock<()>,
         observer: &dyn Observer,
     ) -> Result<Vec<Done>, StageRunError> {
         let bar = observer.begin("closed loop", Some(tasks.len() as u64));
@@ -254,9 +254,10 @@ impl<'a> Job<'a> {
             }
         };
         thread::scope(|scope| {
-            for _ in 1..AT_ONCE {
-                scope.spawn(worker);
-            }
+            scope.spawn(|| {
+                second.wait();
+                worker();
+            });
             worker();
         });
         drop(bar);
