@@ -23,7 +23,7 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
     name: "compare",
     benches: |sizes| Ok(one(CompareBlock::new(&sizes.prefix, "alone"))),
     small: || Ok(small(CompareBlock::new("", "alone"), "one size")),
-    proofs: || Ok(vec![proof(1)?]),
+    proofs: || Ok(vec![proof(1)?, proof(2)?, proof(4096)?]),
     areas: || {
         Ok(vec![AreaRow::new("", emit("")?).note(
             "Both neighbours of the count, the settings and four differences of 35 bits.",
