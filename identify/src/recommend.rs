@@ -6,7 +6,7 @@
 
 use crate::found::FoundMode;
 use posicast_machine::plant::free_motion;
-use posicast_shaper::analysis::worst_residual;
+use posicast_shaper::analysis::worst_residual_of_convolution;
 use posicast_shaper::design::kind::ShaperKind;
 use posicast_shaper::design::{ModeSettings, design_mode};
 use posicast_shaper::impulse::ImpulseSequence;
@@ -178,11 +178,10 @@ fn designed(modes: &[FoundMode], kind: ShaperKind, tolerance: f64, judgement: &J
         order: 1,
         epsilon: tolerance,
     };
-    let mut impulses = ImpulseSequence::unity();
-    for found in modes {
-        let of_mode = design_mode(kind, &found.mode, &settings).ok()?;
-        impulses = impulses.convolve(&of_mode).ok()?;
-    }
+    let designs = modes.iter().map(|found| design_mode(kind, &found.mode, &settings).ok());
+    let of_modes = designs.collect::<Option<Vec<ImpulseSequence>>>()?;
+    let unity = ImpulseSequence::unity();
+    let impulses = of_modes.iter().try_fold(unity, |all, one| all.convolve(one)).ok()?;
     let amplitude = |found: &FoundMode| found.ringing(judgement.acceleration);
     let residual = |found: &FoundMode| {
         let half = found.frequency_interval_hz().high - found.mode.frequency_hz;
@@ -190,7 +189,7 @@ fn designed(modes: &[FoundMode], kind: ShaperKind, tolerance: f64, judgement: &J
         let dampings = found.damping_interval();
         let worst = |damping: f64| {
             let mode = Mode { damping, ..found.mode };
-            worst_residual(impulses.impulses(), &mode, band.min(1.0))
+            worst_residual_of_convolution(&of_modes, &mode, band.min(1.0))
         };
         worst(dampings.low).max(worst(dampings.high.min(0.99)))
     };
@@ -243,6 +242,7 @@ pub fn deflection(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use posicast_shaper::analysis::worst_residual;
     use posicast_shaper::impulse::Impulse;
 
     fn found(frequency_hz: f64, damping: f64, participation: f64) -> FoundMode {

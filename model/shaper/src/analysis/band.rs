@@ -1,7 +1,7 @@
 //! The residual vibration over a band of frequencies: its largest value, and its map over frequency and damping.
 
 use super::residual::{last_time_s, residual_vibration};
-use crate::impulse::Impulse;
+use crate::impulse::{Impulse, ImpulseSequence};
 use crate::mode::Mode;
 
 /// Evaluations of the residual in the ratio step in which two impulses turn once against each other.
@@ -16,9 +16,30 @@ const ROUNDS: usize = 40;
 ///
 /// The residual is evaluated far more often than it can oscillate, and the highest value is refined to rounding.
 pub fn worst_residual(impulses: &[Impulse], mode: &Mode, band: f64) -> f64 {
-    let at = |ratio: f64| residual_vibration(impulses, &mode.scaled(ratio));
+    worst(
+        last_time_s(impulses),
+        |mode| residual_vibration(impulses, mode),
+        mode,
+        band,
+    )
+}
+
+/// The same for the convolution of some shapers. Its residual is the product of theirs, and a convolution of many has too many impulses to
+/// sum them for each frequency.
+pub fn worst_residual_of_convolution(factors: &[ImpulseSequence], mode: &Mode, band: f64) -> f64 {
+    let residual = |mode: &Mode| -> f64 {
+        let of_each = factors.iter().map(|factor| residual_vibration(factor.impulses(), mode));
+        of_each.product()
+    };
+    let duration_s = factors.iter().map(|factor| last_time_s(factor.impulses())).sum();
+    worst(duration_s, residual, mode, band)
+}
+
+/// Largest residual in a band of a shaper of this duration.
+fn worst(duration_s: f64, residual: impl Fn(&Mode) -> f64, mode: &Mode, band: f64) -> f64 {
+    let at = |ratio: f64| residual(&mode.scaled(ratio));
     let (low, high) = ((1.0 - band).max(0.0), 1.0 + band);
-    let turns = last_time_s(impulses) * mode.frequency_hz * (high - low);
+    let turns = duration_s * mode.frequency_hz * (high - low);
     let looks = (LOOKS_PER_TURN * turns).ceil().clamp(LOOKS.0, LOOKS.1);
     let step = (high - low) / looks;
     let (mut best, mut most) = (1.0, at(1.0));
@@ -119,6 +140,27 @@ mod tests {
             (worst_residual(&far, &MODE, 0.1) - 1.0).abs() < 1e-12,
             "a long sequence turns often"
         );
+    }
+
+    #[test]
+    fn the_residual_of_a_convolution_is_that_of_its_impulses() {
+        let zv = impulses(&[(0.0, 0.55), (1.0 / 6.0, 0.45)]);
+        let ei = impulses(&[(0.0, 0.28), (0.11, 0.48), (0.23, 0.24)]);
+        let factors = [zv, ei].map(|list| ImpulseSequence::new(list).unwrap());
+        let all = factors[0].convolve(&factors[1]).unwrap();
+        for damping in [0.0, 0.03, 0.6] {
+            for band in [0.0, 0.1, 0.9] {
+                let mode = Mode { damping, ..MODE };
+                let (of_factors, of_all) = (
+                    worst_residual_of_convolution(&factors, &mode, band),
+                    worst_residual(all.impulses(), &mode, band),
+                );
+                assert!(
+                    (of_factors - of_all).abs() < 1e-12,
+                    "damping ratio {damping}, band {band}: {of_factors} and {of_all}"
+                );
+            }
+        }
     }
 
     #[test]

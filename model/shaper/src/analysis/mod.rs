@@ -11,7 +11,7 @@ mod ringing;
 mod settling;
 mod start_control;
 
-pub use band::{SensitivityGrid, sensitivity_grid, worst_residual};
+pub use band::{SensitivityGrid, sensitivity_grid, worst_residual, worst_residual_of_convolution};
 pub use insensitivity::{INSENSITIVITY_LIMIT, Insensitivity, insensitivity};
 pub use residual::{pole_sum, residual_vibration, residual_vibration_at, sensitivity_curve, tap_impulses};
 pub use ringing::left as ringing_left_by;
