@@ -113,6 +113,20 @@ impl Effort {
     }
 }
 
+/// Returns the products of all pairs of columns.
+fn products(columns: &DMatrix<f64>) -> DMatrix<f64> {
+    let width = columns.ncols();
+    let mut products = DMatrix::zeros(width, width);
+    for a in 0..width {
+        for b in 0..=a {
+            let product = columns.column(a).dot(&columns.column(b));
+            products[(a, b)] = product;
+            products[(b, a)] = product;
+        }
+    }
+    products
+}
+
 /// A symmetric matrix of products, whose columns are scaled to one before it is factored.
 pub(crate) struct Gram {
     factor: Cholesky<f64, Dyn>,
@@ -122,7 +136,7 @@ pub(crate) struct Gram {
 impl Gram {
     /// Returns the scaled matrix of columns; `None` if they are dependent or contain NaN.
     pub(crate) fn of(columns: &DMatrix<f64>) -> Option<Self> {
-        Self::new(&columns.tr_mul(columns))
+        Self::new(&products(columns))
     }
 
     pub(crate) fn new(products: &DMatrix<f64>) -> Option<Self> {
@@ -183,20 +197,15 @@ fn slopes(problem: &impl Separable, unknowns: &[f64], now: &Linear) -> DMatrix<f
     slopes - &now.basis * shared
 }
 
-/// Sum of squares of the residuals at exactly these unknowns.
-pub(crate) fn square(problem: &impl Separable, unknowns: &[f64]) -> Option<f64> {
-    linear(problem, unknowns).map(|linear| linear.residual.norm_squared())
-}
-
 /// Returns the best fit near the given unknowns; `None` if the rows do not determine the coefficients.
 pub(crate) fn refine(problem: &impl Separable, start: &[f64], effort: Effort) -> Option<Solution> {
     let (steps, settled) = effort.limits();
     let mut unknowns = start.to_vec();
     let mut now = linear(problem, &unknowns)?;
     let mut here = slopes(problem, &unknowns, &now);
-    let mut damping = 1e-3;
+    let (mut products, mut pull) = (self::products(&here), here.tr_mul(&now.residual));
+    let (mut damping, mut growth) = (1e-3, 4.0);
     for _ in 0..steps {
-        let products = here.tr_mul(&here);
         if products.is_empty() {
             break;
         }
@@ -205,21 +214,30 @@ pub(crate) fn refine(problem: &impl Separable, start: &[f64], effort: Effort) ->
             stiff[(n, n)] *= 1.0 + damping;
         }
         let Some(gram) = Gram::new(&stiff) else { break };
-        let tried = problem.stepped(&unknowns, &gram.solve_one(&here.tr_mul(&now.residual)));
+        let step = gram.solve_one(&pull);
         let square = now.residual.norm_squared();
+        // A step that promises so little is the last, taken or not.
+        let promised = 2.0 * step.dot(&pull) - step.dot(&(&products * &step));
+        let is_last = promised < settled * square;
+        let tried = problem.stepped(&unknowns, &step);
         match linear(problem, &tried) {
             Some(better) if better.residual.norm_squared() < square => {
                 let gain = square - better.residual.norm_squared();
                 (unknowns, now) = (tried, better);
                 here = slopes(problem, &unknowns, &now);
-                damping = (damping * 0.2).max(1e-9);
-                if gain < settled * square {
+                (products, pull) = (self::products(&here), here.tr_mul(&now.residual));
+                // Nielsen's rule: what the step gained of its promise says how far the problem is linear.
+                let kept = (2.0 * gain / promised - 1.0).clamp(-1.0, 1.0);
+                damping = (damping * (1.0 - kept.powi(3)).max(0.1)).max(1e-9);
+                growth = 4.0;
+                if is_last || gain < settled * square {
                     break;
                 }
             }
             _ => {
-                damping *= 8.0;
-                if damping > 1e6 {
+                damping *= growth;
+                growth *= 2.0;
+                if is_last || damping > 1e6 {
                     break;
                 }
             }

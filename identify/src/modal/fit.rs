@@ -1,7 +1,8 @@
 //! Separable least-squares fit of poles to points.
 
 use super::ResponsePoint;
-use crate::separable::{self, Effort, Separable};
+use super::columns::{Coefficients, Nodes, resonance, times_j, top_hz, weighted};
+use crate::separable::{self, Effort, Gram, Separable};
 use nalgebra::{Complex, DMatrix, DVector};
 use std::f64::consts::TAU;
 
@@ -33,6 +34,9 @@ impl Lateness {
     /// The phase factor `e^{−j2πf(delay + bend·f/top)}`.
     pub(crate) fn turn(&self, frequency_hz: f64, top_hz: f64) -> Complex<f64> {
         let late_s = self.delay_s + self.bend_s * frequency_hz / top_hz;
+        if late_s == 0.0 {
+            return Complex::ONE;
+        }
         Complex::from_polar(1.0, -TAU * frequency_hz * late_s)
     }
 }
@@ -73,8 +77,6 @@ fn least_damping(points: &[ResponsePoint], frequency_hz: f64) -> f64 {
 pub(crate) fn is_resolved(points: &[ResponsePoint], pole: &Pole) -> bool {
     pole.damping > OFF_BOUND * least_damping(points, pole.frequency_hz) && pole.damping * OFF_BOUND < DAMPING.1
 }
-/// Number of terms of the complex polynomial that represents everything except the modes.
-const FREE_TERMS: i32 = 5;
 
 /// Poles fitted to the points, with the quality of the fit.
 #[derive(Debug, Clone)]
@@ -104,94 +106,22 @@ impl Fit {
     }
 }
 
-const I: Complex<f64> = Complex::new(0.0, 1.0);
-
-/// Denominator of a mode, and the frequency relative to its own.
-fn denominator(pole: &Pole, frequency_hz: f64) -> (Complex<f64>, f64) {
-    let ratio = frequency_hz / pole.frequency_hz;
-    (Complex::new(1.0 - ratio * ratio, 2.0 * pole.damping * ratio), ratio)
-}
-
-/// Values of the linear unknowns' columns at one frequency.
-fn columns(poles: &[Pole], phase: Phase, frequency_hz: f64, top_hz: f64, row: &mut Vec<Complex<f64>>) {
-    let turn = phase.lateness().turn(frequency_hz, top_hz);
-    for pole in poles {
-        let (below, ratio) = denominator(pole, frequency_hz);
-        let still = turn / below;
-        row.extend([still, I * ratio * still]);
-    }
-    let relative = frequency_hz / top_hz;
-    match phase {
-        Phase::Late(_) => row.extend([turn, turn * relative * relative]),
-        Phase::Free => {
-            row.extend((0..FREE_TERMS).map(|power| Complex::new((2.0 * relative - 1.0).powi(power), 0.0)));
-            for column in 0..row.len() {
-                row.push(I * row[column]);
-            }
-        }
-    }
-}
-
-/// Number of linear unknowns.
-fn width(poles: &[Pole], phase: Phase) -> usize {
-    match phase {
-        Phase::Late(_) => 2 * poles.len() + 2,
-        Phase::Free => 2 * (2 * poles.len() + FREE_TERMS as usize),
-    }
-}
-
-/// A row of values for each point, divided by its standard deviation; real parts come before imaginary parts. `fill`
-/// writes the row of a frequency in Hz.
-fn stacked(points: &[ResponsePoint], width: usize, mut fill: impl FnMut(f64, &mut Vec<Complex<f64>>)) -> DMatrix<f64> {
-    let mut matrix = DMatrix::zeros(2 * points.len(), width);
-    let mut row = Vec::with_capacity(width);
-    for (n, point) in points.iter().enumerate() {
-        for node_hz in point.nodes_hz() {
-            row.clear();
-            fill(node_hz, &mut row);
-            for (column, value) in row.iter().enumerate() {
-                matrix[(n, column)] += 0.5 * value.re / point.deviation;
-                matrix[(points.len() + n, column)] += 0.5 * value.im / point.deviation;
-            }
-        }
-    }
-    matrix
-}
-
-/// Measured values divided by their standard deviations; real parts come before imaginary parts.
-fn weighted(points: &[ResponsePoint]) -> DVector<f64> {
-    DVector::from_fn(2 * points.len(), |row, _| {
-        let point = &points[row % points.len()];
-        let value = if row < points.len() {
-            point.value.re
-        } else {
-            point.value.im
-        };
-        value / point.deviation
-    })
-}
-
-/// The highest frequency in Hz.
-fn top_hz(points: &[ResponsePoint]) -> f64 {
-    points.last().map_or(1.0, |point| point.frequency_hz)
-}
-
 /// The fit of poles to points. The unknowns are `ln f` and `ln ζ` of each pole, and delay and bend if the phase is
 /// known.
 struct Poles<'a> {
     points: &'a [ResponsePoint],
+    nodes: Nodes,
     measured: DVector<f64>,
     is_free: bool,
-    top_hz: f64,
 }
 
 impl<'a> Poles<'a> {
     fn new(points: &'a [ResponsePoint], phase: Phase) -> Self {
         Self {
             points,
+            nodes: Nodes::new(points),
             measured: weighted(points),
             is_free: phase == Phase::Free,
-            top_hz: top_hz(points),
         }
     }
 
@@ -221,7 +151,7 @@ impl<'a> Poles<'a> {
     }
 
     /// Returns the complex coefficients of a pole's displacement and velocity.
-    fn coefficients_of_pole(&self, coefficients: &DVector<f64>, pole: usize) -> (Complex<f64>, Complex<f64>) {
+    fn coefficients_of_pole(&self, coefficients: &DVector<f64>, pole: usize) -> Coefficients {
         let half = coefficients.len() / 2;
         let at = |column: usize| {
             if self.is_free {
@@ -230,7 +160,7 @@ impl<'a> Poles<'a> {
                 Complex::new(coefficients[column], 0.0)
             }
         };
-        (at(2 * pole), at(2 * pole + 1))
+        [at(2 * pole), at(2 * pole + 1)]
     }
 
     fn values(&self, fitted: &DVector<f64>) -> Vec<Complex<f64>> {
@@ -248,33 +178,14 @@ impl Separable for Poles<'_> {
 
     fn basis(&self, unknowns: &[f64]) -> DMatrix<f64> {
         let (poles, phase) = self.poles(unknowns);
-        stacked(self.points, width(&poles, phase), |frequency_hz, row| {
-            columns(&poles, phase, frequency_hz, self.top_hz, row);
-        })
+        self.nodes.basis(&poles, phase)
     }
 
     fn slopes(&self, unknowns: &[f64], _: &DMatrix<f64>, coefficients: &DVector<f64>) -> DMatrix<f64> {
         let (poles, phase) = self.poles(unknowns);
-        let mut values = Vec::new();
-        stacked(self.points, unknowns.len(), |frequency_hz, row| {
-            let turn = phase.lateness().turn(frequency_hz, self.top_hz);
-            for (k, pole) in poles.iter().enumerate() {
-                let (below, ratio) = denominator(pole, frequency_hz);
-                let (still, moving) = self.coefficients_of_pole(coefficients, k);
-                let above = still + I * moving * ratio;
-                let by_ratio =
-                    I * moving / below - above * Complex::new(-2.0 * ratio, 2.0 * pole.damping) / (below * below);
-                row.push(-by_ratio * ratio * turn);
-                row.push(-above * I * (2.0 * ratio * pole.damping) / (below * below) * turn);
-            }
-            if !self.is_free {
-                values.clear();
-                columns(&poles, phase, frequency_hz, self.top_hz, &mut values);
-                let value: Complex<f64> = values.iter().zip(coefficients).map(|(v, c)| v * c).sum();
-                let by_delay = -I * TAU * frequency_hz * value;
-                row.extend([by_delay, by_delay * (frequency_hz / self.top_hz)]);
-            }
-        })
+        let rest = [coefficients[2 * poles.len()], coefficients[2 * poles.len() + 1]];
+        let of_pole = |pole| self.coefficients_of_pole(coefficients, pole);
+        self.nodes.slopes(&poles, phase, of_pole, rest)
     }
 
     fn stepped(&self, unknowns: &[f64], step: &DVector<f64>) -> Vec<f64> {
@@ -296,10 +207,26 @@ impl Separable for Poles<'_> {
     }
 }
 
-/// Sum of squares of the residuals, divided by their deviations, at exactly these poles and this phase.
-pub(crate) fn square(points: &[ResponsePoint], poles: &[Pole], phase: Phase) -> Option<f64> {
-    let problem = Poles::new(points, phase);
-    separable::square(&problem, &problem.unknowns(poles, phase))
+/// Returns which of these delays in seconds explains most with exactly these poles; `None` if the points do not determine their shares. The
+/// phase factor of a point is that of its mean frequency, so all delays have the same columns.
+pub(crate) fn likeliest_delay(
+    points: &[ResponsePoint],
+    poles: &[Pole],
+    delays_s: impl Iterator<Item = f64>,
+) -> Option<Lateness> {
+    let basis = Nodes::new(points).basis(poles, Phase::Late(Lateness::default()));
+    let gram = Gram::of(&basis)?;
+    let explained = |late: Lateness| {
+        let earlier = points.iter().map(|point| ResponsePoint {
+            value: point.value * late.turn(point.frequency_hz, 1.0).conj(),
+            ..*point
+        });
+        let pull = basis.tr_mul(&weighted(&earlier.collect::<Vec<_>>()));
+        gram.solve_one(&pull).dot(&pull)
+    };
+    let tried = delays_s.map(|delay_s| Lateness { delay_s, bend_s: 0.0 });
+    let tried = tried.map(|late| (explained(late), late));
+    tried.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, late)| late)
 }
 
 /// Returns the best fit near the given poles; `None` if the points do not determine the unknowns.
@@ -316,7 +243,7 @@ pub(crate) fn refine(points: &[ResponsePoint], poles: &[Pole], phase: Phase, eff
         )
     });
     let shares = (0..poles.len()).map(|k| {
-        let (still, _) = problem.coefficients_of_pole(&solution.coefficients, k);
+        let [still, _] = problem.coefficients_of_pole(&solution.coefficients, k);
         (still.norm(), solution.linear_deviation(2 * k, row))
     });
     Some(Fit {
@@ -382,9 +309,9 @@ impl<'a> Gains<'a> {
     pub(super) fn of_unit_share(&self, pole: &Pole) -> f64 {
         let (mut cc, mut rr, mut cr) = (0.0, 0.0, 0.0);
         for (point, turn) in self.points.iter().zip(&self.turns) {
-            let (below, ratio) = denominator(pole, point.frequency_hz);
-            let still = turn / below;
-            let moving = I * ratio * still;
+            let (resonance, ratio) = resonance(pole, point.frequency_hz);
+            let still = turn * resonance;
+            let moving = times_j(still) * ratio;
             cc += still.norm_sqr();
             rr += moving.norm_sqr();
             cr += (still.conj() * moving).re;
@@ -398,9 +325,9 @@ impl<'a> Gains<'a> {
         let (mut cc, mut rr, mut cr) = (0.0, 0.0, Complex::new(0.0, 0.0));
         let (mut c_rest, mut r_rest) = (Complex::new(0.0, 0.0), Complex::new(0.0, 0.0));
         for ((point, rest), turn) in self.points.iter().zip(&self.residual).zip(&self.turns) {
-            let (below, ratio) = denominator(pole, point.frequency_hz);
-            let still = turn / below;
-            let moving = I * ratio * still;
+            let (resonance, ratio) = resonance(pole, point.frequency_hz);
+            let still = turn * resonance;
+            let moving = times_j(still) * ratio;
             cc += still.norm_sqr();
             rr += moving.norm_sqr();
             cr += still.conj() * moving;

@@ -12,10 +12,11 @@
 //! If the phase is not known, the coefficients are complex and the rest is a polynomial with complex coefficients: the
 //! poles are then found for any phase of the excitation.
 
+mod columns;
 mod fit;
 mod select;
 
-pub(crate) use fit::{Fit, Lateness, Phase, is_resolved, refine, square};
+pub(crate) use fit::{Fit, Lateness, Phase, is_resolved, likeliest_delay, refine};
 pub use select::{TOLD_RINGING, Visible};
 pub(crate) use select::{grown, pruned, select, visible};
 

@@ -3,7 +3,7 @@
 use super::excitation::{QuarterOrder, Rise, Sweep, SweptAcceleration};
 use super::record::Grid;
 use super::transfer::{self, Division, Lines, estimate};
-use crate::modal::{self, Fit, Lateness, Phase, ResponsePoint};
+use crate::modal::{self, Fit, Phase, ResponsePoint};
 use crate::parallel::both;
 use crate::separable::Effort;
 
@@ -63,20 +63,9 @@ pub(super) fn timed(points: &[ResponsePoint]) -> Option<Fit> {
     // A third of the points is as good for start values, and takes a third of the time.
     let points = &modal::thinned(points, 3);
     let free = modal::select(points, Phase::Free)?;
-    let delays = (-TRIED..=TRIED).map(|n| Lateness {
-        delay_s: f64::from(n) * TRIED_S,
-        bend_s: 0.0,
-    });
-    modal::refine(points, &free.poles, best(points, &free, delays)?, Effort::Full)
-}
-
-/// Returns the fit with the lateness that explains most.
-fn best(points: &[ResponsePoint], free: &Fit, tried: impl Iterator<Item = Lateness>) -> Option<Phase> {
-    let squares = tried.filter_map(|late| {
-        let phase = Phase::Late(late);
-        Some((modal::square(points, &free.poles, phase)?, phase))
-    });
-    squares.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, phase)| phase)
+    let delays_s = (-TRIED..=TRIED).map(|n| f64::from(n) * TRIED_S);
+    let late = modal::likeliest_delay(points, &free.poles, delays_s)?;
+    modal::refine(points, &free.poles, Phase::Late(late), Effort::Full)
 }
 
 /// Number of steps of the search for the start on either side, and their size in samples.

@@ -129,17 +129,29 @@ pub(super) fn spectrum(
     sample_s: f64,
     start_s: f64,
 ) -> Vec<Complex<f64>> {
-    let mut sum = vec![Complex::new(0.0, 0.0); lines.values.len()];
+    /// Edges whose phases turn side by side: the next phase of one edge waits for its last one.
+    const BESIDE: usize = 8;
+    let still = Complex::new(0.0, 0.0);
+    let mut sum = vec![still; lines.values.len()];
     let mut before = 0.0;
-    for (begin_s, acceleration) in excitation.pieces() {
-        let late_s = start_s + begin_s;
-        let mut turn = Complex::from_polar(acceleration - before, -TAU * lines.frequency_hz(0) * late_s);
-        let step = Complex::from_polar(1.0, -TAU * lines.resolution_hz * late_s);
-        for line in &mut sum {
-            *line += turn;
-            turn *= step;
-        }
+    let edges = excitation.pieces().map(|(begin_s, acceleration)| {
+        let (late_s, size) = (start_s + begin_s, acceleration - before);
         before = acceleration;
+        (late_s, size)
+    });
+    let edges: Vec<(f64, f64)> = edges.collect();
+    for edges in edges.chunks(BESIDE) {
+        let (mut turns, mut steps) = ([still; BESIDE], [still; BESIDE]);
+        for (n, &(late_s, size)) in edges.iter().enumerate() {
+            turns[n] = Complex::from_polar(size, -TAU * lines.frequency_hz(0) * late_s);
+            steps[n] = Complex::from_polar(1.0, -TAU * lines.resolution_hz * late_s);
+        }
+        for line in &mut sum {
+            for (turn, step) in turns.iter_mut().zip(&steps) {
+                *line += *turn;
+                *turn *= step;
+            }
+        }
     }
     for (n, line) in sum.iter_mut().enumerate() {
         *line /= Complex::new(0.0, TAU * lines.frequency_hz(n) * sample_s);
