@@ -227,17 +227,27 @@ impl Example {
     }
 }
 
-/// Tries the constants and wires of the stages of two machines; true if the page lists each that was not found.
+/// Tries the constants and wires of the stages of two machines, side by side; true if the page lists each that was not found.
 fn mutate_wires(most: usize, options: &MutationOptions, write: bool) -> Result<bool, Error> {
-    let mut is_listed = true;
-    for (name, example, marks) in [
+    let stages = [
         ("stage", XY_STAGE, WIRES_MARKS),
         ("stage with steps", PRINTER, STEPS_WIRES_MARKS),
-    ] {
-        let folder = std::env::temp_dir().join(format!("posicast-mutate-{}", std::process::id()));
-        let found = wires(&example.stage()?, example.top, most, options, &folder);
-        // A file that cannot be deleted stays in the temporary folder; that is no reason to fail.
-        let _ = std::fs::remove_dir_all(&folder);
+    ];
+    let found = thread::scope(|scope| {
+        let searches = stages.each_ref().map(|(_, example, _)| {
+            scope.spawn(|| {
+                let folder =
+                    std::env::temp_dir().join(format!("posicast-mutate-{}-{}", std::process::id(), example.top));
+                let found = wires(&example.stage()?, example.top, most, options, &folder);
+                // A file that cannot be deleted stays in the temporary folder; that is no reason to fail.
+                let _ = std::fs::remove_dir_all(&folder);
+                found
+            })
+        });
+        searches.map(|search| search.join().unwrap_or_else(|panic| resume_unwind(panic)))
+    });
+    let mut is_listed = true;
+    for ((name, _, marks), found) in stages.iter().zip(found) {
         let (all, fates) = found?;
         let table = wires_table(name, all, &fates, options.clocks);
         if write {

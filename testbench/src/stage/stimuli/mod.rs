@@ -299,23 +299,25 @@ impl StageRandom {
         }
     }
 
-    /// Moves the encoders, one step at a time.
+    /// Moves the encoders, one step at a time. An axis with steps shows no current in its pins: its index comes as if it walked.
     fn encoders(&mut self, seen: &[u64], inputs: &mut [u64]) {
         for at in 0..self.axes.len() {
+            let [own, _] = self.axes[at].encoders;
+            let is_pulled = own[0].is_some() || self.axes[at].absolute.is_some();
             let step = match self.axes[at].moves {
                 Moves::Still => 0,
-                Moves::Walks => {
-                    let walks = self.one_in(40);
-                    let back = self.one_in(3);
-                    i32::from(walks) * if back { -1 } else { 1 }
-                }
-                Moves::Follows => {
+                Moves::Follows if is_pulled => {
                     let axis = &mut self.axes[at];
                     let level = |output: usize| seen.get(output).map_or(0, |value| *value as i32 & 1);
                     axis.mean += level(axis.shown[0]) - level(axis.shown[1]);
                     let step = i32::from(axis.mean >= STEP_CLOCKS) - i32::from(axis.mean <= -STEP_CLOCKS);
                     axis.mean -= step * STEP_CLOCKS;
                     if axis.invert { -step } else { step }
+                }
+                Moves::Walks | Moves::Follows => {
+                    let walks = self.one_in(40);
+                    let back = self.one_in(3);
+                    i32::from(walks) * if back { -1 } else { 1 }
                 }
             };
             // Rarely both lines change at once.
