@@ -175,9 +175,16 @@ pub fn optimum(order: u32, epsilon: f64) -> Result<VibrationlessCascade, JointEr
     let starts = seeds.iter().flat_map(|seed| ways.map(|way| (seed, way)));
     let found = starts.filter_map(|(seed, way)| Family::of(seed).follow(seed, epsilon, way));
     let widest = found.max_by(|a, b| a.index.total_cmp(&b.index)).ok_or_else(refused)?;
-    lock(&KNOWN).insert(key, widest.clone());
+    let mut known = lock(&KNOWN);
+    if known.len() >= MOST_KNOWN {
+        known.clear();
+    }
+    known.insert(key, widest.clone());
     Ok(widest)
 }
+
+/// Number of cascades that are remembered: a program that sweeps the bound would fill the memory.
+const MOST_KNOWN: usize = 64;
 
 /// Cascades that were solved, by order and bits of the bound.
 static KNOWN: Mutex<BTreeMap<(u32, u64), VibrationlessCascade>> = Mutex::new(BTreeMap::new());
@@ -256,17 +263,19 @@ fn peak_between(ratios: &[f64], left: f64, right: f64) -> f64 {
     let (mut low, mut high) = (left, right);
     let mut middle = f64::midpoint(low, high);
     // The height is stationary there, so half of the digits of the frequency give all digits of the height.
-    for round in 0..32 {
+    for _ in 0..64 {
         let (value, rise) = slope(middle);
         if value > 0.0 {
             high = middle
         } else {
             low = middle
         }
-        let newton = middle - value / rise;
-        let is_near = round >= 4 && low < newton && newton < high;
-        let next = if is_near { newton } else { f64::midpoint(low, high) };
-        if is_near && (next - middle).abs() < 1e-9 * middle {
+        // Newton's method for the slope times the distances to both zeros: at them the slope is infinite, and the product is not.
+        let (distances, change) = ((middle - left) * (right - middle), left + right - 2.0 * middle);
+        let newton = middle - value * distances / (rise * distances + value * change);
+        let is_inside = low < newton && newton < high;
+        let next = if is_inside { newton } else { f64::midpoint(low, high) };
+        if is_inside && (next - middle).abs() < 1e-9 * middle {
             return next;
         }
         middle = next;
