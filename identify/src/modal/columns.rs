@@ -232,7 +232,7 @@ mod tests {
                 match (unknown, &mut phase) {
                     (4, Phase::Late(late)) => late.delay_s += by,
                     (5, Phase::Late(late)) => late.bend_s += by,
-                    (_, _) if unknown % 2 == 0 => poles[unknown / 2].frequency_hz *= by.exp(),
+                    (_, _) if unknown.is_multiple_of(2) => poles[unknown / 2].frequency_hz *= by.exp(),
                     (_, _) => poles[unknown / 2].damping *= by.exp(),
                 }
                 nodes.basis(&poles, phase) * &coefficients
