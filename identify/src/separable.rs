@@ -248,7 +248,7 @@ pub(crate) fn refine(problem: &impl Separable, start: &[f64], effort: Effort) ->
         fitted: &now.basis * &now.coefficients,
         square: now.residual.norm_squared(),
         freedoms: freedoms.max(1.0),
-        covariance: Gram::of(&here).map(|gram| gram.inverse()),
+        covariance: Gram::new(&products).map(|gram| gram.inverse()),
         linear_covariance: now.gram.inverse(),
         unknowns,
         coefficients: now.coefficients,

@@ -128,7 +128,7 @@ impl Nodes {
         &self,
         poles: &[Pole],
         phase: Phase,
-        coefficients: impl Fn(usize) -> Coefficients,
+        coefficients: &[Coefficients],
         rest: [f64; 2],
     ) -> DMatrix<f64> {
         let (rows, of_poles) = (self.rows(), 2 * poles.len());
@@ -137,26 +137,25 @@ impl Nodes {
         let turns = self.turns(phase);
         let (modes, delays) = matrix.as_mut_slice().split_at_mut(of_poles * rows);
         let above = |[still, moving]: Coefficients, ratio: f64| still + times_j(moving) * ratio;
-        for (k, (pole, columns)) in poles.iter().zip(modes.chunks_exact_mut((2 * rows).max(1))).enumerate() {
-            let [still, moving] = coefficients(k);
+        let modes = modes.chunks_exact_mut((2 * rows).max(1));
+        for ((pole, &of_pole), columns) in poles.iter().zip(coefficients).zip(modes) {
             self.write(columns, |node| {
                 let (resonance, ratio) = resonance(pole, self.frequencies_hz[node]);
                 let outer = resonance * turns[node];
-                let inner = above([still, moving], ratio) * resonance;
-                let by_ratio = times_j(moving) - inner * Complex::new(-2.0 * ratio, 2.0 * pole.damping);
+                let inner = above(of_pole, ratio) * resonance;
+                let by_ratio = times_j(of_pole[1]) - inner * Complex::new(-2.0 * ratio, 2.0 * pole.damping);
                 let by_damping = times_j(inner) * (-2.0 * ratio * pole.damping);
                 [by_ratio * outer * -ratio, by_damping * outer]
             });
         }
         if late > 0 {
-            let all: Vec<Coefficients> = (0..poles.len()).map(coefficients).collect();
             self.write(delays, |node| {
                 let frequency_hz = self.frequencies_hz[node];
                 let relative = frequency_hz / self.top_hz;
                 let mut value = Complex::new(rest[0] + rest[1] * relative * relative, 0.0);
-                for (pole, &coefficients) in poles.iter().zip(&all) {
+                for (pole, &of_pole) in poles.iter().zip(coefficients) {
                     let (resonance, ratio) = resonance(pole, frequency_hz);
-                    value += above(coefficients, ratio) * resonance;
+                    value += above(of_pole, ratio) * resonance;
                 }
                 let by_delay = times_j(turns[node] * value) * (-TAU * frequency_hz);
                 [by_delay, by_delay * relative]
@@ -223,7 +222,7 @@ mod tests {
             let slopes = nodes.slopes(
                 &POLES,
                 phase,
-                |pole| [at(2 * pole), at(2 * pole + 1)],
+                &[0, 1].map(|pole| [at(2 * pole), at(2 * pole + 1)]),
                 [coefficients[4], coefficients[5]],
             );
             assert_eq!(slopes.ncols(), if is_free { 4 } else { 6 });

@@ -184,8 +184,8 @@ impl Separable for Poles<'_> {
     fn slopes(&self, unknowns: &[f64], _: &DMatrix<f64>, coefficients: &DVector<f64>) -> DMatrix<f64> {
         let (poles, phase) = self.poles(unknowns);
         let rest = [coefficients[2 * poles.len()], coefficients[2 * poles.len() + 1]];
-        let of_pole = |pole| self.coefficients_of_pole(coefficients, pole);
-        self.nodes.slopes(&poles, phase, of_pole, rest)
+        let of_poles = (0..poles.len()).map(|pole| self.coefficients_of_pole(coefficients, pole));
+        self.nodes.slopes(&poles, phase, &of_poles.collect::<Vec<_>>(), rest)
     }
 
     fn stepped(&self, unknowns: &[f64], step: &DVector<f64>) -> Vec<f64> {

@@ -3,9 +3,8 @@
 use super::ResponsePoint;
 use super::fit::{Fit, Gains, Phase, Pole, refine};
 use crate::found::FoundMode;
-use crate::parallel::both;
+use crate::parallel::mapped;
 use crate::separable::Effort;
-use std::ops::Range;
 
 /// Largest number of poles that are sought.
 const MOST: usize = 8;
@@ -63,10 +62,8 @@ pub(crate) fn pruned(points: &[ResponsePoint], fit: Fit) -> Fit {
             refine(points, &rough.poles, rough.phase, Effort::Full)
         };
         let better = |a: &Fit, b: &Fit| a.square.total_cmp(&b.square);
-        let best_of = |range: Range<usize>| range.filter_map(without).min_by(better);
-        let count = kept.poles.len();
-        let (some, others) = both(|| best_of(0..count / 2), || best_of(count / 2..count));
-        match some.into_iter().chain(others).min_by(better) {
+        let each: Vec<usize> = (0..kept.poles.len()).collect();
+        match mapped(&each, |&k| without(k)).into_iter().flatten().min_by(better) {
             Some(best) if best.square - kept.square < least_gain => kept = best,
             _ => return kept,
         }

@@ -4,7 +4,7 @@ use super::excitation::{QuarterOrder, Rise, Sweep, SweptAcceleration};
 use super::record::Grid;
 use super::transfer::{self, Division, Lines, estimate};
 use crate::modal::{self, Fit, Phase, ResponsePoint};
-use crate::parallel::both;
+use crate::parallel::mapped;
 use crate::separable::Effort;
 
 /// Sharpness of the impulse response below which other orders of the quarters are tried.
@@ -90,15 +90,12 @@ pub(super) fn sought(
         };
         (estimate(&division, |_| 1.0).explained, *start_s)
     };
-    let best = |tried: &[f64]| tried.iter().map(explained).max_by(|a, b| a.0.total_cmp(&b.0));
     let mut start_s = about_s;
     for (steps, step) in SOUGHT_STEPS {
         let tried: Vec<f64> = (-steps..=steps)
             .map(|n| start_s + f64::from(n) * step * grid.sample_s())
             .collect();
-        let (some, others) = tried.split_at(tried.len() / 2);
-        let (one, other) = both(|| best(some), || best(others));
-        let found = one.into_iter().chain(other).max_by(|a, b| a.0.total_cmp(&b.0));
+        let found = mapped(&tried, explained).into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
         start_s = found.map_or(start_s, |(_, start_s)| start_s);
     }
     start_s

@@ -5,7 +5,7 @@ use super::find::Course;
 use super::line::middle;
 use super::transfer::Lines;
 use super::wave::spectrum;
-use crate::parallel::both;
+use crate::parallel::mapped;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
@@ -111,13 +111,7 @@ pub(super) fn starts_in(course: &Course, range: &Range) -> Vec<f64> {
         let from = (lowest_hz.max(0.5) / step).ceil() as i64;
         let to = (highest_hz / step).floor() as i64;
         let starts_hz: Vec<f64> = (from..=to).map(|n| n as f64 * step).collect();
-        let (some, others) = starts_hz.split_at(starts_hz.len() / 2);
-        let all = |starts_hz: &[f64]| -> Vec<(f64, f64)> {
-            let with_likeness = starts_hz.iter().map(|&start_hz| (start_hz, like(start_hz)));
-            with_likeness.collect()
-        };
-        let (some, others) = both(|| all(some), || all(others));
-        tried.extend(some.into_iter().chain(others));
+        tried.extend(mapped(&starts_hz, |&start_hz| (start_hz, like(start_hz))));
     }
     let best = tried.iter().map(|(_, like)| *like).fold(0.0, f64::max);
     // The usual frequency comes first, then those on the coarser steps.

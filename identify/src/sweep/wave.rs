@@ -131,8 +131,7 @@ pub(super) fn spectrum(
 ) -> Vec<Complex<f64>> {
     /// Edges whose phases turn side by side: the next phase of one edge waits for its last one.
     const BESIDE: usize = 8;
-    let still = Complex::new(0.0, 0.0);
-    let mut sum = vec![still; lines.values.len()];
+    let mut sum = vec![Complex::ZERO; lines.values.len()];
     let mut before = 0.0;
     let edges = excitation.pieces().map(|(begin_s, acceleration)| {
         let (late_s, size) = (start_s + begin_s, acceleration - before);
@@ -141,7 +140,7 @@ pub(super) fn spectrum(
     });
     let edges: Vec<(f64, f64)> = edges.collect();
     for edges in edges.chunks(BESIDE) {
-        let (mut turns, mut steps) = ([still; BESIDE], [still; BESIDE]);
+        let (mut turns, mut steps) = ([Complex::ZERO; BESIDE], [Complex::ZERO; BESIDE]);
         for (n, &(late_s, size)) in edges.iter().enumerate() {
             turns[n] = Complex::from_polar(size, -TAU * lines.frequency_hz(0) * late_s);
             steps[n] = Complex::from_polar(1.0, -TAU * lines.resolution_hz * late_s);
