@@ -263,19 +263,17 @@ fn peak_between(ratios: &[f64], left: f64, right: f64) -> f64 {
     let (mut low, mut high) = (left, right);
     let mut middle = f64::midpoint(low, high);
     // The height is stationary there, so half of the digits of the frequency give all digits of the height.
-    for _ in 0..64 {
+    for round in 0..32 {
         let (value, rise) = slope(middle);
         if value > 0.0 {
             high = middle
         } else {
             low = middle
         }
-        // Newton's method for the slope times the distances to both zeros: at them the slope is infinite, and the product is not.
-        let (distances, change) = ((middle - left) * (right - middle), left + right - 2.0 * middle);
-        let newton = middle - value * distances / (rise * distances + value * change);
-        let is_inside = low < newton && newton < high;
-        let next = if is_inside { newton } else { f64::midpoint(low, high) };
-        if is_inside && (next - middle).abs() < 1e-9 * middle {
+        let newton = middle - value / rise;
+        let is_near = round >= 4 && low < newton && newton < high;
+        let next = if is_near { newton } else { f64::midpoint(low, high) };
+        if is_near && (next - middle).abs() < 1e-9 * middle {
             return next;
         }
         middle = next;
