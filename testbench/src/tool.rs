@@ -2,6 +2,7 @@
 //! output.
 
 use std::io::{ErrorKind, Read, Seek, SeekFrom};
+use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::time::Duration;
@@ -31,6 +32,11 @@ fn limit_or(limit: Duration) -> Duration {
 pub(crate) fn answer_limit() -> Duration {
     limit_or(ANSWER_LIMIT)
 }
+
+/// A program with a limit of processor time may take this many times as long on the clock, where others run beside it.
+pub const WAITED: u32 = 8;
+/// Signal of Linux to a process that has used its processor time.
+const SIGXCPU: i32 = 24;
 
 /// Number of last lines of a failed program's output that an error keeps, where the cause is found.
 const LAST_LINES: usize = 20;
@@ -110,17 +116,32 @@ impl Tool {
         }
     }
 
-    /// Runs the command and returns its output. `None` if it was stopped at `limit`; a failure is an error.
+    /// Runs the program in `folder` and returns its output. `None` if it used up `limit`, or waited too long for a
+    /// processor ([`WAITED`]); a failure is an error.
+    ///
+    /// The limit is one of processor time, so that a verdict does not depend on what else the machine does.
     pub(crate) fn run_within(
         &self,
-        command: &mut Command,
+        folder: &Path,
+        arguments: &[&str],
         doing: &'static str,
         limit: Duration,
     ) -> Result<Option<String>, Error> {
-        match tool::run_within(command, limit).map_err(|cause| self.not_started(doing, &cause))? {
+        if let Some(missing) = self.missing() {
+            return Err(Error::ToolMissing(vec![missing]));
+        }
+        let mut command = tool::command_in("sh", folder);
+        command.args(["-c", r#"ulimit -S -t "$0" && exec "$@""#]);
+        command
+            .arg(limit.as_secs().max(1).to_string())
+            .arg(self.program())
+            .args(arguments);
+        let ended = tool::run_within(&mut command, limit.saturating_mul(WAITED));
+        match ended.map_err(|cause| self.not_started(doing, &cause))? {
             Ended::Well(printed) => Ok(Some(printed)),
-            Ended::Badly { status, printed } => Err(self.failed(doing, status.to_string(), &printed)),
             Ended::TimeOut => Ok(None),
+            Ended::Badly { status, .. } if status.signal() == Some(SIGXCPU) => Ok(None),
+            Ended::Badly { status, printed } => Err(self.failed(doing, status.to_string(), &printed)),
         }
     }
 
@@ -239,18 +260,13 @@ mod tests {
     }
 
     #[test]
-    fn a_program_without_end_is_stopped() {
-        let run =
-            |words: &[&str], limit| NOTHING.run_within(Command::new("sh").arg("-c").args(words), "testing", limit);
-        let soon = Duration::from_millis(50);
-        assert_eq!(run(&["sleep 60"], soon).unwrap(), None);
-        let long = Duration::from_secs(60);
-        assert_eq!(run(&["echo said"], long).unwrap().as_deref(), Some("said\n"));
-        assert!(
-            run(&["echo why; exit 3"], long)
-                .unwrap_err()
-                .to_string()
-                .contains("why")
-        );
+    fn only_the_time_that_a_program_computes_counts() {
+        const SHELL: Tool = Tool { name: "sh", ..NOTHING };
+        let run = |script| SHELL.run_within(Path::new("."), &["-c", script], "testing", Duration::from_secs(1));
+        assert_eq!(run("while :; do :; done").unwrap(), None);
+        assert_eq!(run("sleep 1.5; echo said").unwrap().as_deref(), Some("said\n"));
+        assert!(run("echo why; exit 3").unwrap_err().to_string().contains("why"));
+        let missing = NOTHING.run_within(Path::new("."), &[], "testing", Duration::from_secs(1));
+        assert!(missing.unwrap_err().is_missing_tool());
     }
 }

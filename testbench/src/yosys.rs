@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use crate::Error;
 use crate::formal::{self, ABC, YOSYS, asserted};
+pub use crate::tool::WAITED;
 
 /// Runs the Yosys script `script`, a file in `folder`. `doing` describes the task in an error.
 ///
@@ -24,7 +25,7 @@ pub fn abc(folder: &Path, commands: &str, doing: &'static str) -> Result<String,
     formal::abc(folder, commands, doing)
 }
 
-/// As [`abc`]; `None` if ABC exceeded its time limit.
+/// As [`abc`]; `None` if ABC used more than `limit` of processor time, or took [`WAITED`] times as long.
 ///
 /// # Errors
 /// As [`abc`].
@@ -34,9 +35,7 @@ pub fn abc_within(
     doing: &'static str,
     limit: Duration,
 ) -> Result<Option<String>, Error> {
-    let mut abc = ABC.command_in(folder);
-    abc.args(["-c", commands]);
-    ABC.run_within(&mut abc, doing, limit)
+    ABC.run_within(folder, &["-c", commands], doing, limit)
 }
 
 /// Clock of the first counterexample in ABC's output; `None` without one.

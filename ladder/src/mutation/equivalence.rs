@@ -6,7 +6,7 @@ use super::Mutant;
 use super::netlist::Netlist;
 use crate::netlist::EquivalenceVerdict;
 use posicast_testbench::Error;
-use posicast_testbench::yosys::{abc_within, counterexample_clock};
+use posicast_testbench::yosys::{WAITED, abc_within, counterexample_clock};
 
 /// Largest number of bits of memories that are converted to registers.
 const MOST_MEMORY_BITS: u32 = 8192;
@@ -35,10 +35,12 @@ impl Without {
     }
 }
 
-/// Time limit of ABC's `dprove`, which either finishes within seconds or not at all.
-const DPROVE_LIMIT: Duration = Duration::from_secs(30);
+/// Processor time of ABC's `dprove`, which either finishes within seconds or not at all.
+const DPROVE_LIMIT: Duration = Duration::from_secs(10);
+/// Processor time of ABC's `reach`, which has the rest of its engine's time beside it.
+const REACH_LIMIT: Duration = Duration::from_secs(20);
 
-/// Compares a mutant with its block. It takes at most about eight times `limit`.
+/// Compares a mutant with its block. It takes at most about twelve times `limit` of processor time.
 ///
 /// It first compares without memories and multipliers; if that gives no proof, with the multipliers, then with the
 /// memories too, as registers that begin as 0 in both. The module of the mutant is always included.
@@ -57,8 +59,8 @@ pub(super) fn compare(netlist: &Netlist<'_>, mutant: &Mutant, limit: Duration) -
         }
     }
     // A difference counts only where the least is left out.
-    let commands = format!("read_aiger merged.aig; bmc3 -T {}", seconds(limit));
-    let said = abc(netlist, &commands, limit.saturating_mul(2))?;
+    let commands = format!("read_aiger merged.aig; bmc3 -T {}", patience(limit));
+    let said = abc(netlist, &commands, limit)?;
     let clock = said.and_then(|said| counterexample_clock(&said));
     Ok(
         clock.map_or(EquivalenceVerdict::Unknown, |clock| EquivalenceVerdict::Different {
@@ -77,16 +79,17 @@ fn prove(netlist: &Netlist<'_>, limit: Duration) -> Result<bool, Error> {
     let engines = [
         (
             format!(
-                "read_aiger miter.aig; fold; strash; orpos; scorr; scorr -F 4; write_aiger merged.aig; reach -T 20 -F 100000 -B {BDD_NODES}"
+                "read_aiger miter.aig; fold; strash; orpos; scorr; scorr -F 4; write_aiger merged.aig; reach -T {} -F 100000 -B {BDD_NODES}",
+                patience(REACH_LIMIT)
             ),
             limit.saturating_mul(2),
         ),
         // Induction, retiming and reachability in turn succeed quickly or not at all.
-        ("read_aiger merged.aig; dprove -T 5".to_owned(), DPROVE_LIMIT),
         (
-            format!("read_aiger merged.aig; pdr -m -T {}", seconds(limit)),
-            limit.saturating_mul(2),
+            format!("read_aiger merged.aig; dprove -T {}", patience(DPROVE_LIMIT)),
+            DPROVE_LIMIT,
         ),
+        (format!("read_aiger merged.aig; pdr -m -T {}", patience(limit)), limit),
     ];
     for (commands, limit) in engines {
         let Some(said) = abc(netlist, &commands, limit)? else {
@@ -105,11 +108,12 @@ fn prove(netlist: &Netlist<'_>, limit: Duration) -> Result<bool, Error> {
     Ok(false)
 }
 
-fn seconds(limit: Duration) -> u64 {
-    limit.as_secs().max(1)
+/// ABC's own limit, in seconds on the clock, of a command that may compute for `limit`.
+fn patience(limit: Duration) -> u64 {
+    limit.saturating_mul(WAITED).as_secs().max(1)
 }
 
-/// Returns ABC's output; `None` if ABC exceeded its time limit.
+/// Returns ABC's output; `None` if ABC used more than `limit` of processor time.
 fn abc(netlist: &Netlist<'_>, commands: &str, limit: Duration) -> Result<Option<String>, Error> {
     abc_within(netlist.folder(), commands, "comparing a mutant", limit)
 }
