@@ -7,7 +7,7 @@ use posicast_blocks::linear_scale::ScaleRatio;
 use posicast_blocks::pwm::{ActiveLow, BridgeMode, PwmConfig};
 use posicast_blocks::shaper::{ShaperConfig, ShaperMotion};
 use posicast_blocks::sliding_mode::{Gain, SettingRow};
-use posicast_blocks::stage::{StageConfig, StageScale};
+use posicast_blocks::stage::{StageCompare, StageConfig, StageScale};
 use posicast_blocks::{ClockedBlock, Direction};
 use posicast_machine::hardware::{self, MachineStage};
 use posicast_machine::machine_file::{self, Machine};
@@ -330,5 +330,36 @@ fn lockstep_the_registers_keep_their_promises() {
             let mut host = Host::new(component.map(), device, RegisterHardware::Running).unwrap();
             assert_eq!(test(&mut host), Ok(()), "{name}");
         }
+    }
+}
+
+/// The machine's row is far away: only the stimuli can bring a pulse.
+#[test]
+fn every_seed_passes_positions_of_a_compare() {
+    let mut config = quick(1);
+    config.axes[0].compare = Some(StageCompare {
+        first: 1_000_000,
+        spacing: 1,
+        positions: 1,
+        rises: true,
+        falls: false,
+        hysteresis: 0,
+        pulse_clocks: 1,
+    });
+    let block = StageBlock::new(&config, "comparing_stage").unwrap();
+    let ports = block.component().composition().ports();
+    let (ins, outs): (Vec<_>, Vec<_>) = ports.iter().partition(|port| port.direction == Direction::Input);
+    let pulse = outs.iter().position(|port| port.name == "x_compare").unwrap();
+    for seed in 1..=5 {
+        let (mut stimuli, mut model) = (block.stimuli(0, seed), block.model(seed));
+        let (mut inputs, mut outputs) = (vec![0; ins.len()], vec![0; outs.len()]);
+        let mut pulses = 0;
+        for _ in 0..500_000 {
+            let before = outputs[pulse];
+            stimuli.fill(&outputs.clone(), &mut inputs);
+            model.step(&inputs, &mut outputs).unwrap();
+            pulses += u64::from(before == 0 && outputs[pulse] == 1);
+        }
+        assert!(pulses > 0, "seed {seed}");
     }
 }

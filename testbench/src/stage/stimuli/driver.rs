@@ -14,8 +14,6 @@ use crate::stimuli::table::{Table, pick};
 
 mod scenes;
 
-pub(crate) use self::scenes::SCENES;
-
 /// How an encoder moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Moves {
@@ -42,8 +40,12 @@ pub(crate) enum Pins {
 #[derive(Debug, Clone, Copy)]
 enum Do {
     Write(u32, u32),
-    /// Writes the position of the axis plus these counts, both Q24.8.
-    Beside(u32, i32),
+    /// Writes the position of the axis plus an amount, both with `fraction` bits below the counts.
+    Beside {
+        offset: u32,
+        fraction: u32,
+        amount: i32,
+    },
     Wait(u32),
     /// Moves the axis onto limit switches: bit 0 is +, bit 1 is −; 0 moves it off them.
     Switch(u32),
@@ -158,9 +160,13 @@ impl Driver {
                 self.axes[axis].script.pop_front();
                 Some((offset, data))
             }
-            Some(Do::Beside(offset, counts)) => {
+            Some(Do::Beside {
+                offset,
+                fraction,
+                amount,
+            }) => {
                 self.axes[axis].script.pop_front();
-                Some((offset, (self.axes[axis].here << 8).wrapping_add(counts) as u32))
+                Some((offset, (self.axes[axis].here << fraction).wrapping_add(amount) as u32))
             }
             _ => None,
         }
@@ -199,7 +205,7 @@ impl Driver {
                     axis.pins.push(Pins::Slip);
                     axis.script.pop_front();
                 }
-                Some(Do::Write(..) | Do::Beside(..)) | None => {}
+                Some(Do::Write(..) | Do::Beside { .. }) | None => {}
             }
         }
     }
@@ -214,7 +220,7 @@ impl Driver {
 
     /// Returns whether an axis is in a sequence of writes.
     pub(crate) fn writes(&self, axis: usize) -> bool {
-        matches!(self.axes[axis].script.front(), Some(Do::Write(..) | Do::Beside(..)))
+        matches!(self.axes[axis].script.front(), Some(Do::Write(..) | Do::Beside { .. }))
     }
 
     /// Returns the limit switches that an axis is on: bit 0 is +, bit 1 is −.
@@ -247,9 +253,18 @@ impl Driver {
 
     /// Writes the axis's position at that time plus these counts, both Q24.8.
     fn beside(&mut self, axis: usize, register: &str, counts: i32) {
+        self.beside_in(axis, register, 8, counts);
+    }
+
+    /// The same with another number of bits below the counts.
+    fn beside_in(&mut self, axis: usize, register: &str, fraction: u32, amount: i32) {
         let name = format!("{}_{register}", self.axes[axis].name);
         let found = self.map.register(&name);
-        let access = found.map(|register| Do::Beside(register.offset, counts));
+        let access = found.map(|register| Do::Beside {
+            offset: register.offset,
+            fraction,
+            amount,
+        });
         self.axes[axis].script.extend(access);
     }
 

@@ -9,7 +9,7 @@ use posicast_blocks::component::{Component, ComponentPart};
 use posicast_blocks::registers::{Access, Register, RegisterMap};
 use posicast_blocks::{Direction, Port};
 
-use self::driver::{Driver, Moves, Pins, SCENES};
+use self::driver::{Driver, Moves, Pins};
 use self::reads::{Clears, ReadBack};
 use crate::absolute_encoder::encoder::{EncoderFault, SimulatedEncoder, range};
 use crate::registers::RegistersRandom;
@@ -245,7 +245,7 @@ impl StageRandom {
     fn new_mood(&mut self) {
         self.moods += 1;
         // Each axis leads each scene once before random traffic begins.
-        if self.scenes < SCENES.len() * self.axes.len() || self.moods.is_multiple_of(2) {
+        if self.scenes < self.driver.scenes() * self.axes.len() || self.moods.is_multiple_of(2) {
             return self.new_scene();
         }
         self.mood = Mood {

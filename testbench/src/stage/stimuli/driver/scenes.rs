@@ -8,11 +8,14 @@ use posicast_blocks::axis::KICK;
 use posicast_blocks::segments::{EntryMotion, Point};
 use rand::Rng;
 
-use super::{Do, Driver, Moves};
+use super::{Do, Driver, Moves, Plan};
 
-/// All scenes. Those that drive the most wires between the blocks in the fewest ticks come first; the first one loads a table, moves,
+/// A scene: it plans what happens to its leader.
+type Scene = fn(&mut Driver, usize);
+
+/// The scenes of every stage. Those that drive the most wires between the blocks in the fewest ticks come first; the first one loads a table, moves,
 /// trips and recovers, and a host at a line does not come much further.
-pub(crate) const SCENES: [fn(&mut Driver, usize); 25] = [
+const SCENES: [Scene; 25] = [
     Driver::command_beyond_a_soft_limit,
     Driver::follows_badly,
     Driver::slips,
@@ -40,6 +43,9 @@ pub(crate) const SCENES: [fn(&mut Driver, usize); 25] = [
     Driver::clock_unlocked,
 ];
 
+/// The scene of a stage with a position compare, after the others.
+const OF_COMPARE: Scene = Driver::passes_positions;
+
 /// Largest jerk of an entry, which has 40 bits.
 const JERK_MAX: i64 = (1 << 39) - 1;
 /// A jerk that accelerates an axis to some 100 counts per tick within three ticks.
@@ -48,11 +54,17 @@ const FAST: i64 = 1 << 36;
 const SLOW: i64 = 1 << 31;
 
 impl Driver {
+    /// Number of scenes of this stage.
+    pub(crate) fn scenes(&self) -> usize {
+        let compares = |axis: &Plan| self.map.register(&format!("{}_compare_arm", axis.name)).is_some();
+        SCENES.len() + usize::from(self.axes.iter().any(compares))
+    }
+
     /// Begins the scene of this number: all scenes with each axis as the leader, then again.
     pub(crate) fn play(&mut self, number: usize) {
-        let axes = self.axes.len();
+        let (axes, scenes) = (self.axes.len(), self.scenes());
         let (leader, rest) = (number % axes, number / axes);
-        self.round = (rest / SCENES.len()) as u32;
+        self.round = (rest / scenes) as u32;
         for axis in 0..axes {
             self.axes[axis].script.clear();
             if axis == leader {
@@ -63,7 +75,7 @@ impl Driver {
             self.axes[axis].switches = 0;
             self.bring_up(axis);
         }
-        SCENES[rest % SCENES.len()](self, leader);
+        SCENES.get(rest % scenes).unwrap_or(&OF_COMPARE)(self, leader);
         // A flag of the counter, which is cleared in one clock.
         if self.one_in(2) {
             self.act(leader, Do::Slip);
@@ -505,6 +517,29 @@ impl Driver {
             self.index(axis);
             self.interrupts(axis);
             self.ticks(axis, 2);
+        }
+    }
+
+    /// Arms the compare with a row of positions on both sides of the axis, and passes some of them there and back.
+    fn passes_positions(&mut self, axis: usize) {
+        const POSITIONS: i32 = 4096;
+        let spacing = self.below(4) as i32 + 1;
+        let [hysteresis, pulse_clocks] = [4, 60].map(|below| self.below(below));
+        self.tell(axis, "compare_control", 0b11 | hysteresis << 16);
+        self.tell(axis, "compare_spacing", spacing as u32);
+        self.tell(axis, "compare_positions", POSITIONS as u32);
+        self.beside_in(axis, "compare_first", 0, -spacing * POSITIONS / 2);
+        self.tell(axis, "compare_pulse", pulse_clocks);
+        self.tell(axis, "compare_arm", 0);
+        self.company(axis);
+        let back = self.is_odd(axis);
+        for back in [back, !back] {
+            self.goes(axis, FAST, back);
+            self.set_off(axis);
+            self.ticks(axis, 8);
+            self.tell(axis, "stop", 0);
+            self.ticks(axis, 4);
+            self.bring_up(axis);
         }
     }
 }
