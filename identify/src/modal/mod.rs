@@ -16,7 +16,7 @@ mod columns;
 mod fit;
 mod select;
 
-pub(crate) use fit::{Fit, Lateness, Phase, is_resolved, likeliest_delay, refine};
+pub(crate) use fit::{Fit, Lateness, Phase, Pole, is_resolved, likeliest_delay, refine};
 pub use select::{TOLD_RINGING, Visible};
 pub(crate) use select::{grown, pruned, select, visible};
 

@@ -3,7 +3,7 @@
 use super::excitation::{QuarterOrder, Rise, Sweep, SweptAcceleration};
 use super::record::Grid;
 use super::transfer::{self, Division, Lines, estimate};
-use crate::modal::{self, Fit, Phase, ResponsePoint};
+use crate::modal::{self, Fit, Phase, Pole, ResponsePoint};
 use crate::parallel::mapped;
 use crate::separable::Effort;
 
@@ -56,16 +56,19 @@ pub(super) fn placed(grid: &Grid, begun: &Begun, start_s: f64) -> Lines {
     }
 }
 
-/// Fits poles without knowledge of the phase, then finds the lateness that fits them.
-pub(super) fn timed(points: &[ResponsePoint]) -> Option<Fit> {
+/// Finds the lateness that fits these poles, or else poles that are fitted without knowledge of the phase.
+pub(super) fn timed(points: &[ResponsePoint], known: Option<&[Pole]>) -> Option<Fit> {
     const TRIED_S: f64 = 0.25e-3;
     const TRIED: i32 = 60;
     // A third of the points is as good for start values, and takes a third of the time.
     let points = &modal::thinned(points, 3);
-    let free = modal::select(points, Phase::Free)?;
+    let poles = match known {
+        Some(poles) => poles.to_vec(),
+        None => modal::select(points, Phase::Free)?.poles,
+    };
     let delays_s = (-TRIED..=TRIED).map(|n| f64::from(n) * TRIED_S);
-    let late = modal::likeliest_delay(points, &free.poles, delays_s)?;
-    modal::refine(points, &free.poles, Phase::Late(late), Effort::Full)
+    let late = modal::likeliest_delay(points, &poles, delays_s)?;
+    modal::refine(points, &poles, Phase::Late(late), Effort::Full)
 }
 
 /// Number of steps of the search for the start on either side, and their size in samples.

@@ -3,8 +3,10 @@
 //! If a sweep begins or ends otherwise than described, its first or last pulses are missing or too many, and the transfer function has
 //! ripples beside that end, which no mode explains. So descriptions are compared by the residual of the modes there.
 
+use super::follow::Followed;
 use super::transfer::Band;
-use super::{FoundInSweep, SweepError};
+use super::{FoundInSweep, Sweep, SweepError};
+use crate::modal::Pole;
 use crate::parallel::both;
 
 /// Smallest width in Hz of the parts of a band that are compared, and number of points in each.
@@ -20,23 +22,33 @@ const LIKELIER: f64 = 2.5;
 /// The same for an earlier end beside a square wave: the motion after that end is then unknown, and so cannot contradict it.
 const LIKELIER_EARLIER: f64 = 10.0;
 
-/// Returns the likeliest of the earlier result and the results of some descriptions, the more usual ones first.
+/// Returns the likeliest of the earlier result and the results of some descriptions, the more usual ones first. `described` gets the poles of
+/// the likeliest so far, if there is one.
 pub(super) fn likelier(
-    before: Option<FoundInSweep>,
-    sweeps: &[super::Sweep],
-    described: impl Fn(&super::Sweep) -> Result<FoundInSweep, SweepError> + Sync,
-) -> Option<FoundInSweep> {
-    let mut best = before;
-    for (n, pair) in sweeps.chunks(2).enumerate() {
-        let (second, first) = both(|| pair.get(1).map(&described), || described(&pair[0]));
+    before: Option<Followed>,
+    sweeps: &[Sweep],
+    described: impl Fn(&Sweep, Option<&[Pole]>) -> Result<Followed, SweepError> + Sync,
+) -> Option<Followed> {
+    let (mut best, mut rest, mut is_first) = (before, sweeps, true);
+    while let [sweep, others @ ..] = rest {
+        let known = best.as_ref().map(|best| &best.poles[..]);
+        // The first one has both threads for its own fit.
+        let beside = others.first().filter(|_| known.is_some());
+        let (second, first) = both(
+            || beside.map(|sweep| described(sweep, known)),
+            || described(sweep, known),
+        );
         // The other descriptions rise in the same way, and would explain as little.
-        if n == 0 && matches!(first, Err(SweepError::Unrelated(_))) {
+        if is_first && matches!(first, Err(SweepError::Unrelated(_))) {
             return best;
         }
-        for found in [Some(first), second].into_iter().flatten().flatten() {
+        (rest, is_first) = (&others[usize::from(beside.is_some())..], false);
+        for followed in [Some(first), second].into_iter().flatten().flatten() {
             best = match best {
-                Some(best) if gain(&best, &found) < least_gain(&best, &found) => Some(best),
-                _ => Some(found),
+                Some(best) if gain(&best.found, &followed.found) < least_gain(&best.found, &followed.found) => {
+                    Some(best)
+                }
+                _ => Some(followed),
             };
         }
     }

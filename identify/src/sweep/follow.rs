@@ -9,7 +9,7 @@ use super::record::{Grid, Record};
 use super::reduce::Reduced;
 use super::transfer::{self, Band, Lines, Transfer};
 use super::{FoundInSweep, SweepError, wave};
-use crate::modal::{self, Lateness, Phase, ResponsePoint};
+use crate::modal::{self, Lateness, Phase, Pole, ResponsePoint};
 use crate::separable::Effort;
 use nalgebra::Complex;
 
@@ -44,14 +44,31 @@ pub(super) enum Look {
 pub(super) enum Pass {
     /// The clock has this relative error.
     Drifts(f64),
-    Ended(Box<FoundInSweep>),
+    Ended(Box<Followed>),
 }
 
-/// Follows the log whose clock is assumed to run faster than that of the sweep by the factor `clock`.
+/// A log followed with one description of its sweep.
+#[derive(Debug)]
+pub(super) struct Followed {
+    pub(super) found: FoundInSweep,
+    /// The poles of the fit, also those that are no modes.
+    pub(super) poles: Vec<Pole>,
+    /// Whether the poles are those of another description, moved to this one: enough to compare the two.
+    pub(super) is_rough: bool,
+}
+
+/// Follows the log whose clock is assumed to run faster than that of the sweep by the factor `clock`. With `known` poles, those of
+/// another description, no others are sought, which takes less than half the time.
 ///
 /// # Errors
 /// [`SweepError`] if no modes can be determined.
-pub(super) fn followed(log: &Reduced<'_>, sweep: &Sweep, clock: f64, look: Look) -> Result<Pass, SweepError> {
+pub(super) fn pass(
+    log: &Reduced<'_>,
+    sweep: &Sweep,
+    clock: f64,
+    look: Look,
+    known: Option<&[Pole]>,
+) -> Result<Pass, SweepError> {
     let band = Band {
         low_hz: sweep.start_hz * (1.0 + MARGIN),
         high_hz: sweep.end_hz * (1.0 - MARGIN),
@@ -125,7 +142,7 @@ pub(super) fn followed(log: &Reduced<'_>, sweep: &Sweep, clock: f64, look: Look)
     let covered = covered?;
     let rough = rough.within(&covered);
     let crossing = crossing(fine_s);
-    let timed = timed(&outside(&rough.points, &crossing)).ok_or(SweepError::Empty)?;
+    let timed = timed(&outside(&rough.points, &crossing), known).ok_or(SweepError::Empty)?;
     let late = timed.phase.lateness();
     let bends = late.bend_s.abs() > BEND_S && late.bend_s.abs() > CERTAIN * timed.bend_deviation_s;
     if bends && look != Look::Nowhere {
@@ -172,7 +189,10 @@ pub(super) fn followed(log: &Reduced<'_>, sweep: &Sweep, clock: f64, look: Look)
             turn += 1;
             continue;
         }
-        let grown = modal::pruned(points, modal::grown(points, start));
+        let grown = match known {
+            Some(_) => start,
+            None => modal::pruned(points, modal::grown(points, start)),
+        };
         let all = |points: &[ResponsePoint], effort| modal::refine(points, &grown.poles, grown.phase, effort);
         if points.len() < transfer.points.len() {
             let fit = all(&transfer.points, Effort::Rough).ok_or(SweepError::Empty)?;
@@ -186,7 +206,7 @@ pub(super) fn followed(log: &Reduced<'_>, sweep: &Sweep, clock: f64, look: Look)
         return Err(SweepError::Unlike(told));
     }
     let Told { modes, doubtful } = modes(&fit, &transfer.points, &covered, &measured.unseen, sweep.rate_hz_per_s);
-    Ok(Pass::Ended(Box::new(FoundInSweep {
+    let found = FoundInSweep {
         visible: modal::visible(&transfer.points, &fit, &modes),
         modes,
         doubtful_hz: doubtful.iter().map(|found| found.mode.frequency_hz).collect(),
@@ -204,6 +224,11 @@ pub(super) fn followed(log: &Reduced<'_>, sweep: &Sweep, clock: f64, look: Look)
         reduced_square: fit.reduced_square(),
         fitted: fit.values,
         transfer,
+    };
+    Ok(Pass::Ended(Box::new(Followed {
+        found,
+        poles: fit.poles,
+        is_rough: known.is_some(),
     })))
 }
 

@@ -23,9 +23,10 @@ pub use excitation::{QuarterOrder, Rise, SquareWave, Sweep, Sweeping, SweptAccel
 pub use transfer::{Band, Transfer};
 
 use crate::found::FoundMode;
+use crate::modal::Pole;
 use crate::signal::AccelerationLog;
 use choose::likelier;
-use follow::{Look, Pass, followed};
+use follow::{Followed, Look, Pass};
 use nalgebra::Complex;
 use posicast_shaper::mode::Mode;
 use reduce::Reduced;
@@ -123,7 +124,7 @@ const PASSES: usize = 4;
 pub fn identify(log: &AccelerationLog, sweep: &Sweep) -> Result<FoundInSweep, SweepError> {
     long_enough(log)?;
     check(sweep, log.sample_s)?;
-    identify_reduced(&Reduced::new(log, sweep.end_hz), sweep)
+    Ok(followed(&Reduced::new(log, sweep.end_hz), sweep, None)?.found)
 }
 
 /// Requires that a log is long enough for a sweep.
@@ -138,23 +139,22 @@ fn long_enough(log: &AccelerationLog) -> Result<(), SweepError> {
     }
 }
 
-fn identify_reduced(log: &Reduced<'_>, sweep: &Sweep) -> Result<FoundInSweep, SweepError> {
+/// Follows a log with a description, whose clock is corrected until it fits. `known` are poles of another description: see [`follow::pass`].
+fn followed(log: &Reduced<'_>, sweep: &Sweep, known: Option<&[Pole]>) -> Result<Followed, SweepError> {
     let mut clock = 1.0;
     for pass in 0..PASSES {
         let look = if pass == 0 { Look::Everywhere } else { Look::Near };
-        match followed(log, sweep, clock, look)? {
+        match follow::pass(log, sweep, clock, look, known)? {
             Pass::Drifts(error) => clock *= 1.0 + error,
-            Pass::Ended(found) => {
-                return Ok(FoundInSweep {
-                    clock_error: clock - 1.0,
-                    ..*found
-                });
+            Pass::Ended(mut followed) => {
+                followed.found.clock_error = clock - 1.0;
+                return Ok(*followed);
             }
         }
     }
     // The clock's error does not converge, so there is no evidence that the clock is wrong.
-    match followed(log, sweep, 1.0, Look::Nowhere)? {
-        Pass::Ended(found) => Ok(*found),
+    match follow::pass(log, sweep, 1.0, Look::Nowhere, known)? {
+        Pass::Ended(followed) => Ok(*followed),
         Pass::Drifts(_) => Err(SweepError::Empty),
     }
 }
@@ -169,41 +169,42 @@ pub fn identify_any(log: &AccelerationLog) -> Result<FoundInSweep, SweepError> {
     long_enough(log)?;
     let usual = Sweep::default();
     let reduced = Reduced::new(log, usual.end_hz);
-    let described = |sweep: &Sweep| {
+    let described = |sweep: &Sweep, known: Option<&[Pole]>| {
         check(sweep, log.sample_s)?;
-        identify_reduced(&reduced, sweep)
+        followed(&reduced, sweep, known)
     };
-    let by_default = || described(&usual);
+    let whole = |sweep: &Sweep| Ok(described(sweep, None)?.found);
     let Some(course) = find::course(&reduced) else {
-        return by_default();
+        return whole(&usual);
     };
     let mut likeliest = None;
     if course.is_of(&usual) {
-        let found = by_default();
+        let followed = described(&usual, None);
         let is_it = |found: &FoundInSweep| found.transfer.explained > EXPLAINED && course.may_begin_at(usual.start_hz);
-        if found.as_ref().is_ok_and(is_it) {
-            return found;
+        if followed.as_ref().is_ok_and(|followed| is_it(&followed.found)) {
+            return Ok(followed?.found);
         }
-        likeliest = found.ok();
+        likeliest = followed.ok();
     }
     likeliest = likelier(likeliest, &course.by_start(), described);
     let rounded = course.at_round_rate();
     if let Some(rounded) = &rounded {
         likeliest = likelier(likeliest, &rounded.by_start(), described);
     }
-    if let Some(found) = &likeliest {
+    if let Some(Followed { found, .. }) = &likeliest {
         let courses = [Some(&course), rounded.as_ref()].into_iter().flatten();
         let ends = courses.filter(|course| course.rises_as(&found.sweep));
         let ends: Vec<Sweep> = ends.flat_map(|course| course.by_end(&found.sweep)).collect();
         likeliest = likelier(likeliest, &ends, described);
     }
-    match likeliest {
-        Some(found) => Ok(FoundInSweep {
-            is_estimated: found.sweep != usual,
-            ..found
-        }),
-        None => by_default(),
-    }
+    let Some(Followed { found, is_rough, .. }) = likeliest else {
+        return whole(&usual);
+    };
+    let found = if is_rough { whole(&found.sweep)? } else { found };
+    Ok(FoundInSweep {
+        is_estimated: found.sweep != usual,
+        ..found
+    })
 }
 
 fn check(sweep: &Sweep, sample_s: f64) -> Result<(), SweepError> {
