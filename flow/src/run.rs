@@ -95,7 +95,7 @@ pub fn run(options: &Options, observer: &dyn Observer) -> Result<Outcome<Documen
         observer,
     };
     let check = || {
-        let lint = checks::lint(plan.simulator, &rtl.sources, &rtl.tops())?;
+        let lint = checks::lint(plan.simulator, &rtl.sources)?;
         let estimate = estimate(&plan, machine, rtl.sources.files(), observer)?;
         Ok((lint, estimate, compare(machine, DEFAULT_BAND)))
     };
@@ -237,20 +237,6 @@ struct Rtl<'a> {
 }
 
 impl Rtl<'_> {
-    /// The shapers, the components, the stage or the inline shaper, its line, and what is on another bus.
-    fn tops(&self) -> Vec<&dyn Block> {
-        let stage = self.built.stage.as_ref().map(|stage| &stage.block);
-        let components = self.built.components.iter().chain(stage);
-        let components = components.map(|component| component as &dyn Block);
-        let link = self.built.link.as_ref().map(|link| link as &dyn Block);
-        std::iter::once(self.top as &dyn Block)
-            .chain(components)
-            .chain(self.inline())
-            .chain(link)
-            .chain(self.built.buses.iter().map(|bus| bus as &dyn Block))
-            .collect()
-    }
-
     /// The inline shaper, with registers or without.
     fn inline(&self) -> Option<&dyn Block> {
         let without = self.built.inline.as_ref().map(|inline| inline as &dyn Block);

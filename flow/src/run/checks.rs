@@ -17,6 +17,7 @@ use posicast_testbench::blocks::{Block, Sources};
 use posicast_testbench::bus_component::BusComponentBlock;
 use posicast_testbench::linked_stage::LinkedStageBlock;
 use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
+use posicast_testbench::verilator;
 use posicast_testbench::wording::counted;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -339,16 +340,12 @@ fn residual_within_rounding(machine: &Machine, design: &MachineDesign) -> Check 
     )
 }
 
-/// Verilator's lint must have no warning about the Verilog under any of the tops; there is no check if another simulator is used.
-pub(crate) fn lint(simulator: Simulator, sources: &Sources, tops: &[&dyn Block]) -> Result<Option<Check>, Failure> {
+/// Verilator's lint must have no warning about the Verilog; there is no check if another simulator is used.
+pub(crate) fn lint(simulator: Simulator, sources: &Sources) -> Result<Option<Check>, Failure> {
     if simulator != Simulator::Verilator {
         return Ok(None);
     }
-    let mut warnings = Vec::new();
-    for top in tops {
-        let reached = sources.reached_by(*top).map_err(bench::failure)?;
-        warnings.extend(reached.lint(*top).map_err(bench::failure)?);
-    }
+    let warnings = verilator::lint_all(sources.files()).map_err(bench::failure)?;
     let clean = || format!("{} files", sources.files().len());
     Ok(Some(Check::new(
         "Verilog is clean under verilator --lint-only -Wall",

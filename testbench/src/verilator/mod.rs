@@ -201,8 +201,20 @@ impl ClockedBlock for Verilated {
 /// # Errors
 /// [`Error::ToolMissing`] without Verilator.
 pub fn lint(files: &[PathBuf], top: &str) -> Result<Vec<String>, Error> {
+    warnings(files, &["--top-module", top])
+}
+
+/// Returns the warnings of [`lint`] with each module as the top that no other contains, in one run.
+///
+/// # Errors
+/// [`Error::ToolMissing`] without Verilator.
+pub fn lint_all(files: &[PathBuf]) -> Result<Vec<String>, Error> {
+    warnings(files, &["-Wno-MULTITOP"])
+}
+
+fn warnings(files: &[PathBuf], tops: &[&str]) -> Result<Vec<String>, Error> {
     let mut command = VERILATOR.command();
-    command.args(["--lint-only", "-Wall", "--top-module", top]).args(files);
+    command.args(["--lint-only", "-Wall"]).args(tops).args(files);
     let output = VERILATOR.output(&mut command, "checking the Verilog")?;
     let said: Vec<String> = text(&output).lines().map(str::to_owned).collect();
     if said.is_empty() && !output.status.success() {
