@@ -20,10 +20,12 @@ use crate::{ClockedBlock, Direction, Moore, OutputKind, Port, StepError};
 pub struct Composed {
     composition: Composition,
     members: Vec<Member>,
-    /// The clock in which each member must be clocked next. They are in a list of their own, since every clock looks
-    /// at all of them.
+    /// Indices of the members that must be clocked next, and for each member whether it is one of them.
+    due: Vec<usize>,
+    is_due: Vec<bool>,
+    /// The clock in which each other member must be clocked.
     wakes: Vec<u64>,
-    /// No member must be clocked before this clock.
+    /// None of them must be clocked before this clock.
     next_wake: u64,
     wires: Vec<Wire>,
     input_count: usize,
@@ -35,6 +37,10 @@ pub struct Composed {
     now: u64,
     /// Indices of the members that were clocked in this clock.
     clocked: Vec<usize>,
+    /// Nets with their values after this clock.
+    changes: Vec<(usize, u64)>,
+    /// Whether an output was set since `hold` began.
+    shows_anew: bool,
 }
 
 impl Composed {
@@ -59,13 +65,22 @@ impl Composed {
             .iter()
             .enumerate()
             .filter(|(_, member)| member.is_combinational());
+        let output_nets: Vec<usize> = outputs.filter_map(net).collect();
+        for net in &output_nets {
+            wires[*net].is_output = true;
+        }
+        let all: Vec<usize> = (0..members.len()).collect();
         let mut composed = Self {
             input_count: composition.nets.iter().filter(|net| net.driver.is_none()).count(),
-            output_nets: outputs.filter_map(net).collect(),
+            output_nets,
             combinational: combinational.map(|(at, _)| at).collect(),
-            clocked: (0..members.len()).collect(),
-            wakes: vec![1; members.len()],
-            next_wake: 1,
+            clocked: all.clone(),
+            due: all,
+            is_due: vec![true; members.len()],
+            wakes: vec![u64::MAX; members.len()],
+            next_wake: u64::MAX,
+            changes: Vec::new(),
+            shows_anew: false,
             members,
             wires,
             now: 1,
@@ -97,16 +112,18 @@ impl Composed {
     pub fn hold(&mut self, inputs: &[u64], clocks: u64, outputs: &mut [u64]) -> Result<u64, StepError> {
         self.check(inputs, outputs)?;
         self.show_with(inputs, outputs);
+        self.shows_anew = false;
         let start = self.now;
         let end = start.saturating_add(clocks);
         while self.now < end {
-            if self.next_wake > self.now {
+            if self.due.is_empty() && self.next_wake > self.now {
                 self.now = self.next_wake.min(end);
                 continue;
             }
             self.clock()?;
             self.combine();
-            if !self.shows(outputs, self.now - start) {
+            // An output may have been set twice, at last to what it was.
+            if std::mem::take(&mut self.shows_anew) && !self.shows(outputs, self.now - start) {
                 break;
             }
         }
@@ -136,12 +153,21 @@ impl Composed {
     /// Sets a net from now on, and wakes its watchers.
     #[inline]
     fn set(&mut self, net: usize, value: u64) {
-        if self.wires[net].set(value, self.now) {
-            for watcher in &self.wires[net].watchers {
-                self.wakes[*watcher] = self.wakes[*watcher].min(self.now);
-                self.next_wake = self.now;
-                self.members[*watcher].is_combined = false;
+        let wire = &mut self.wires[net];
+        if !wire.set(value, self.now) {
+            return;
+        }
+        self.shows_anew |= wire.is_output;
+        for watcher in &wire.watchers {
+            self.members[*watcher].has_new_inputs();
+            self.members[*watcher].is_combined = false;
+            if !self.is_due[*watcher] {
+                self.is_due[*watcher] = true;
+                self.due.push(*watcher);
             }
+        }
+        for ignorer in &wire.ignorers {
+            self.members[*ignorer].has_new_inputs();
         }
     }
 
@@ -164,24 +190,42 @@ impl Composed {
     /// Lets a member that was clocked sleep until its next event or a change of an input.
     #[inline]
     fn sleep(&mut self, at: usize) {
-        if self.wakes[at] > self.now && self.members[at].is_clocked_to(self.now) {
-            self.wakes[at] = self.members[at].sleep_until(self.now);
+        if self.is_due[at] || !self.members[at].is_clocked_to(self.now) {
+            return;
+        }
+        self.wakes[at] = self.members[at].sleep_until(self.now);
+        if self.wakes[at] > self.now {
             self.next_wake = self.next_wake.min(self.wakes[at]);
+        } else {
+            self.is_due[at] = true;
+            self.due.push(at);
+        }
+    }
+
+    /// Wakes the members whose time has come.
+    fn wake(&mut self) {
+        self.next_wake = u64::MAX;
+        for (at, wake) in self.wakes.iter().enumerate() {
+            if *wake > self.now {
+                self.next_wake = self.next_wake.min(*wake);
+            } else if !self.is_due[at] {
+                self.is_due[at] = true;
+                self.due.push(at);
+            }
         }
     }
 
     /// Clocks all members that are awake.
     fn clock(&mut self) -> Result<(), StepError> {
+        if self.next_wake <= self.now {
+            self.wake();
+        }
         self.clocked.clear();
-        self.next_wake = u64::MAX;
-        for at in 0..self.wakes.len() {
-            if self.wakes[at] <= self.now {
-                self.members[at].clock(&self.wires, self.now)?;
-                self.wakes[at] = u64::MAX;
-                self.clocked.push(at);
-            } else {
-                self.next_wake = self.next_wake.min(self.wakes[at]);
-            }
+        std::mem::swap(&mut self.clocked, &mut self.due);
+        for at in &self.clocked {
+            self.is_due[*at] = false;
+            self.wakes[*at] = u64::MAX;
+            self.members[*at].clock(&self.wires, self.now)?;
         }
         self.now += 1;
         self.settle();
@@ -191,15 +235,14 @@ impl Composed {
     /// Sets the nets that the registers of the clocked members drive; then lets these members sleep if their inputs
     /// allow it.
     fn settle(&mut self) {
-        for place in 0..self.clocked.len() {
-            let at = self.clocked[place];
-            let member = &mut self.members[at];
-            member.block.show(&mut member.outputs);
-            for output in 0..self.members[at].registers_to.len() {
-                let (from, net) = self.members[at].registers_to[output];
-                self.set(net, self.members[at].outputs[from]);
-            }
+        let mut changes = std::mem::take(&mut self.changes);
+        for at in &self.clocked {
+            self.members[*at].show(&mut changes);
         }
+        for (net, value) in changes.drain(..) {
+            self.set(net, value);
+        }
+        self.changes = changes;
         for place in 0..self.clocked.len() {
             let at = self.clocked[place];
             if !self.members[at].is_combinational() {
@@ -263,8 +306,8 @@ impl Moore for Composed {
         let combined = self.combinational.iter().all(|at| self.members[*at].is_combined);
         let watched = self.wires.iter().zip(inputs).take(self.input_count);
         let mut watched = watched.filter(|(wire, _)| !wire.watchers.is_empty());
-        if combined && watched.all(|(wire, value)| wire.at(self.now) == *value) {
-            self.next_wake - self.now
+        if combined && self.due.is_empty() && watched.all(|(wire, value)| wire.at(self.now) == *value) {
+            self.next_wake.saturating_sub(self.now)
         } else {
             0
         }
@@ -273,7 +316,10 @@ impl Moore for Composed {
     fn pass(&mut self, inputs: &[u64], clocks: u64) {
         self.now += clocks;
         for (wire, value) in self.wires.iter_mut().zip(inputs).take(self.input_count) {
-            wire.set(*value, self.now - 1);
+            if wire.set(*value, self.now - 1) {
+                let readers = wire.watchers.iter().chain(&wire.ignorers);
+                readers.for_each(|reader| self.members[*reader].has_new_inputs());
+            }
         }
     }
 

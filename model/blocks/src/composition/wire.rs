@@ -12,6 +12,10 @@ pub(super) struct Wire {
     counts: Option<u64>,
     /// Members that depend on it even while they are quiet.
     pub(super) watchers: Vec<usize>,
+    /// Members that read it only in clocks that are not quiet.
+    pub(super) ignorers: Vec<usize>,
+    /// Whether the composition shows it.
+    pub(super) is_output: bool,
 }
 
 impl Wire {

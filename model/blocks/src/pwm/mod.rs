@@ -203,12 +203,15 @@ impl Pwm {
     }
 
     /// Simulates this many clocks with the same inputs, from event to event; between two events only the carrier and
-    /// a timer count.
+    /// a timer count, or nothing does while the carrier waits.
     pub fn hold(&mut self, inputs: &Inputs, clocks: u64) {
         let mut left = clocks;
         while left > 0 {
             let before = self.state;
             self.state.clock(&self.config, inputs);
+            if self.state == before {
+                return;
+            }
             left -= 1;
             let skipped = self.state.more_of(&before, inputs).unwrap_or(0).min(left);
             left -= skipped;

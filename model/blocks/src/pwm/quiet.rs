@@ -2,6 +2,7 @@
 
 use super::ports::{INPUT_PORTS, Inputs};
 use super::{LEAD_CLOCKS, Pwm, State};
+use crate::FOREVER;
 use crate::{Moore, OutputKind, show_each};
 
 impl State {
@@ -61,7 +62,7 @@ impl Moore for Pwm {
         show_each(outputs, self.outputs(&inputs).to_raw());
     }
 
-    /// Tries one clock: if it only counts, it and all like it are quiet.
+    /// Tries one clock: if it only counts, it and all like it are quiet; if it changes nothing, because the carrier waits, all are.
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
         if self.state.is_busy() {
             return 0;
@@ -71,6 +72,9 @@ impl Moore for Pwm {
         };
         let mut next = self.state;
         next.clock(&self.config, &inputs);
+        if next == self.state {
+            return FOREVER;
+        }
         next.more_of(&self.state, &inputs).map_or(0, |more| 1 + more)
     }
 
