@@ -263,7 +263,16 @@ fn long_cli_the_bits_of_shapers_on_ecp5_compute_the_model() {
         assert!(number("/cells/multiplexers") > 100 && number("/cells/memories") > 0);
         assert_eq!(number("/lock_step/taps_exercised"), number("/lock_step/taps"));
         let flips = document["flips"].as_array().unwrap();
-        assert!(flips.iter().all(|flip| flip["cells"].as_u64() > Some(0)), "{flips:#?}");
+        // A bit of a table that no state of its inputs reaches changes nothing.
+        let (changing, idle): (Vec<_>, Vec<_>) = flips.iter().partition(|flip| flip["changes_netlist"] == true);
+        assert!(
+            changing.iter().all(|flip| flip["cells"].as_u64() > Some(0)),
+            "{flips:#?}"
+        );
+        assert!(
+            idle.iter().all(|flip| flip["kind"] == "table") && changing.len() > idle.len(),
+            "{flips:#?}"
+        );
         let name = format!("bitstream/two_{}.bit", board.replace('-', "_"));
         assert!(folder.join(name).exists());
     }
