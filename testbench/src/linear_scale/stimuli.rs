@@ -76,13 +76,15 @@ impl LinearScaleRandom {
     fn moves(&mut self) {
         let life = self.life;
         let step = self.rng.random_range(-life.step..=life.step);
-        self.motor += step;
         let own = self.rng.random_range(-life.step..=life.step);
-        self.scale += match (life.follows, life.use_scale, life.mantissa) {
+        let of_scale = match (life.follows, life.use_scale, life.mantissa) {
             (true, true, mantissa) => (step * mantissa) >> life.shift,
             (true, false, mantissa) if mantissa != 0 => (step << life.shift) / mantissa,
             _ => own,
         };
+        // A life may begin at the end of the range.
+        self.motor = self.motor.wrapping_add(step);
+        self.scale = self.scale.wrapping_add(of_scale);
     }
 }
 
