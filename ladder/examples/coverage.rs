@@ -14,7 +14,9 @@
 use std::process::ExitCode;
 
 use posicast_ladder::coverage::{CLOCKS, explanation, measure, outdated, subjects, table};
+use posicast_system::cores;
 use posicast_testbench::Error;
+use posicast_testbench::blocks::Block;
 
 fn main() -> ExitCode {
     match cover() {
@@ -80,15 +82,15 @@ fn cover() -> Result<bool, Error> {
     }
     blocks.retain(|block| arguments.blocks.is_empty() || arguments.blocks.iter().any(|name| name == block.name()));
     let explanations = explanation::all()?;
-    let mut measured = Vec::new();
-    let mut problems = Vec::new();
-    for block in &blocks {
-        let of = measure(block.as_ref(), arguments.clocks)?;
-        let found = of.problems(&explanations);
-        found.iter().for_each(|problem| eprintln!("{problem}"));
-        problems.extend(found);
-        measured.push(of);
-    }
+    let one = |block: &dyn Block| {
+        let of = measure(block, arguments.clocks)?;
+        let problems = of.problems(&explanations);
+        Ok::<_, Error>((of, problems))
+    };
+    let show = |(_, problems): &(_, Vec<String>)| problems.iter().for_each(|problem| eprintln!("{problem}"));
+    let (measured, problems): (Vec<_>, Vec<_>) = cores::each(&blocks, |block| one(block.as_ref()), show)?
+        .into_iter()
+        .unzip();
     let outdated = outdated(&measured, &explanations);
     outdated.iter().for_each(|problem| eprintln!("{problem}"));
     let table = table::markdown(&measured, &explanations);
@@ -97,5 +99,5 @@ fn cover() -> Result<bool, Error> {
         let subjects = subjects()?;
         table::MARKS.renew(|old| table::merged(old, &table, &subjects))?;
     }
-    Ok(problems.is_empty() && outdated.is_empty())
+    Ok(problems.iter().all(Vec::is_empty) && outdated.is_empty())
 }

@@ -18,18 +18,18 @@
 use std::panic::resume_unwind;
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::Instant;
 
 use posicast_blocks::stage::StageConfig;
 use posicast_ladder::mutation::{
-    INSIDE, INSIDE_MARKS, MARKS, MutationOptions, MutationRow, STEPS_WIRES_MARKS, WIRES_MARKS, all, hunt, inside_table,
-    merged, named, run_beside, table, unknown_of, unlisted, wires, wires_table,
+    INSIDE, INSIDE_MARKS, MARKS, MutationOptions, MutationRow, STEPS_WIRES_MARKS, Subject, WIRES_MARKS, all, hunt,
+    inside_table, merged, named, run_beside, table, unknown_of, unlisted, wires, wires_table,
 };
 use posicast_machine::plan::design_machine;
 use posicast_machine::{hardware, machine_file};
+use posicast_system::cores;
 use posicast_testbench::Error;
 
 fn main() -> ExitCode {
@@ -152,55 +152,36 @@ fn mutate() -> Result<bool, Error> {
     let temporary = std::env::temp_dir().join(format!("posicast-mutate-{}", std::process::id()));
     let kept = std::env::var_os("POSICAST_MUTATE_KEEP").map(PathBuf::from);
     let folder = kept.clone().unwrap_or_else(|| temporary.clone());
-    let count = subjects.len();
-    // A thread that is done with a block takes the next one.
-    let (next, written) = (AtomicUsize::new(0), Mutex::new(()));
-    let worker = || -> Result<Vec<(usize, MutationRow)>, Error> {
-        let mut rows = Vec::new();
-        loop {
-            let at = next.fetch_add(1, Ordering::Relaxed);
-            if at >= count {
-                return Ok(rows);
-            }
-            let subject = &subjects[at];
-            let start = Instant::now();
-            let name = subject.block().name();
-            let listed = if write || search {
-                Vec::new()
-            } else {
-                unknown_of(&page, subject)
-            };
-            let fates = run_beside(subject, &options, &listed, &folder.join(format!("{at}_{name}")))?;
-            let row = MutationRow::new(subject, &fates);
-            let _one_by_one = written.lock().unwrap_or_else(PoisonError::into_inner);
-            eprintln!(
-                "{name}, {}: {} mutants, {} by lock step, {} by a property, {} equivalent, {} unknown, {:.1} s",
-                subject.size(),
-                row.mutants,
-                row.lockstep,
-                row.property,
-                row.equivalent,
-                row.unknown.len(),
-                start.elapsed().as_secs_f64()
-            );
-            if write {
-                // Each row is written as soon as it is there, so that finished results are not lost if a later one fails.
-                MARKS.renew(|old| merged(old, std::slice::from_ref(&row), &everything))?;
-            }
-            rows.push((at, row));
+    let subjects: Vec<(usize, Subject)> = subjects.into_iter().enumerate().collect();
+    let written = Mutex::new(());
+    let one = |(at, subject): &(usize, Subject)| {
+        let start = Instant::now();
+        let name = subject.block().name();
+        let listed = if write || search {
+            Vec::new()
+        } else {
+            unknown_of(&page, subject)
+        };
+        let fates = run_beside(subject, &options, &listed, &folder.join(format!("{at}_{name}")))?;
+        let row = MutationRow::new(subject, &fates);
+        let _one_by_one = written.lock().unwrap_or_else(PoisonError::into_inner);
+        eprintln!(
+            "{name}, {}: {} mutants, {} by lock step, {} by a property, {} equivalent, {} unknown, {:.1} s",
+            subject.size(),
+            row.mutants,
+            row.lockstep,
+            row.property,
+            row.equivalent,
+            row.unknown.len(),
+            start.elapsed().as_secs_f64()
+        );
+        if write {
+            // Each row is written as soon as it is there, so that finished results are not lost if a later one fails.
+            MARKS.renew(|old| merged(old, std::slice::from_ref(&row), &everything))?;
         }
+        Ok::<_, Error>(row)
     };
-    let threads = thread::available_parallelism().map_or(1, usize::from).min(count);
-    let mut rows = thread::scope(|scope| {
-        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(worker)).collect();
-        let rows = workers
-            .into_iter()
-            .map(|worker| worker.join().unwrap_or_else(|panic| resume_unwind(panic)));
-        rows.collect::<Result<Vec<_>, Error>>()
-    })?
-    .concat();
-    rows.sort_by_key(|(at, _)| *at);
-    let rows: Vec<MutationRow> = rows.into_iter().map(|(_, row)| row).collect();
+    let rows = cores::each(&subjects, one, |_| ())?;
     if kept.is_none() {
         // A file that cannot be deleted stays in the temporary folder; that is no reason to fail.
         let _ = std::fs::remove_dir_all(&temporary);

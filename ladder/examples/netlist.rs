@@ -14,12 +14,16 @@ use std::time::Duration;
 use posicast_ladder::netlist::{EquivalenceOutcome, EquivalenceVerdict, MappedParts, NetlistParts, check};
 use posicast_ladder::netlist_table;
 use posicast_synth::yosys::{CellNetlist, Family, Yosys, YosysError};
+use posicast_system::cores;
 use posicast_testbench::blocks::{Block, Sources, library_named};
 use posicast_testbench::lockstep::report;
 
+/// An error of a block, from any core.
+type Failure = Box<dyn Error + Send + Sync>;
+
 /// Default number of clocks of the simulation.
 const CLOCKS: u64 = 100_000;
-/// Time limit of each engine of a proof.
+/// Processor time of each engine of a proof.
 const LIMIT: Duration = Duration::from_secs(300);
 
 fn main() -> ExitCode {
@@ -37,7 +41,7 @@ fn main() -> ExitCode {
     }
 }
 
-fn compare() -> Result<bool, Box<dyn Error>> {
+fn compare() -> Result<bool, Failure> {
     let mut names: Vec<String> = std::env::args().skip(1).collect();
     let mut clocks = CLOCKS;
     let write = names.first().is_some_and(|first| first == "--write");
@@ -58,19 +62,22 @@ fn compare() -> Result<bool, Box<dyn Error>> {
     blocks.retain(|block| !names.is_empty() || block.name() != "stage");
     println!("| block | instance | LUT | flip-flops | multipliers | kept | simulated | RTL = netlist | seconds |");
     println!("|---|---|---|---|---|---|---|---|---|");
-    let (mut is_good, mut rows) = (true, String::new());
-    for block in blocks {
-        let compared = Compared::new(&yosys, family, block.as_ref(), clocks)?;
-        println!("{}", compared.row(block.as_ref()));
-        rows += &compared.table_row(family, block.as_ref());
-        is_good &= compared.is_equal();
-    }
+    let one = |block: &dyn Block| {
+        let compared = Compared::new(&yosys, family, block, clocks)?;
+        Ok::<_, Failure>((compared.row(block), compared))
+    };
+    let compared = cores::each(&blocks, |block| one(block.as_ref()), |(row, _)| println!("{row}"))?;
+    let is_good = compared.iter().all(|(_, compared)| compared.is_equal());
     if write && is_good {
         let all = library_named(&[])?;
         let table = match family {
             Family::Cyclone5 => netlist_table::CYCLONE5,
             _ => netlist_table::CYCLONE4E,
         };
+        let rows = blocks.iter().zip(&compared);
+        let rows: String = rows
+            .map(|(block, (_, compared))| compared.table_row(family, block.as_ref()))
+            .collect();
         table.marks.renew(|old| table.renewed(old, &rows, &all))?;
     }
     Ok(is_good)
@@ -83,8 +90,8 @@ struct Compared {
 }
 
 impl Compared {
-    fn new(yosys: &Yosys, family: Family, block: &dyn Block, clocks: u64) -> Result<Self, Box<dyn Error>> {
-        let make = |parts: &NetlistParts| -> Result<CellNetlist, Box<dyn Error>> {
+    fn new(yosys: &Yosys, family: Family, block: &dyn Block, clocks: u64) -> Result<Self, Failure> {
+        let make = |parts: &NetlistParts| -> Result<CellNetlist, Failure> {
             let (logic, kept) = (Sources::of_modules(&parts.logic)?, Sources::of_modules(&parts.kept)?);
             Ok(yosys.netlist(logic.files(), kept.files(), &block.top(), family)?)
         };

@@ -9,10 +9,11 @@ use std::time::{Duration, Instant};
 
 use posicast_ladder::netlist::{EquivalenceVerdict, NetlistParts};
 use posicast_ladder::unset::check;
+use posicast_system::cores;
 use posicast_testbench::Error;
 use posicast_testbench::blocks::{Block, library_named};
 
-/// Time limit of each engine of a proof.
+/// Processor time of each engine of a proof.
 const LIMIT: Duration = Duration::from_secs(300);
 
 fn main() -> ExitCode {
@@ -32,15 +33,12 @@ fn prove() -> Result<bool, Error> {
     blocks.retain(|block| !names.is_empty() || block.name() != "stage");
     println!("| block | instance | memories and multipliers | after a reset | seconds |");
     println!("|---|---|---|---|---|");
-    let mut is_good = true;
-    for block in blocks {
-        is_good &= row(block.as_ref())?;
-    }
-    Ok(is_good)
+    let rows = cores::each(&blocks, |block| row(block.as_ref()), |(row, _)| println!("{row}"))?;
+    Ok(rows.iter().all(|(_, is_proven)| *is_proven))
 }
 
-/// Prints a block's row, and returns whether it is proven.
-fn row(block: &dyn Block) -> Result<bool, Error> {
+/// Returns a block's row, and whether it is proven.
+fn row(block: &dyn Block) -> Result<(String, bool), Error> {
     let start = Instant::now();
     let verdict = check(block, LIMIT)?;
     let says = match verdict {
@@ -48,12 +46,12 @@ fn row(block: &dyn Block) -> Result<bool, Error> {
         EquivalenceVerdict::Different { clock } => format!("differs in clock {clock}"),
         EquivalenceVerdict::Unknown => "unknown".to_owned(),
     };
-    println!(
+    let row = format!(
         "| {} | {} | {} | {says} | {:.1} |",
         block.name(),
         block.instance(),
         NetlistParts::of(block.modules()?).kept.len(),
         start.elapsed().as_secs_f64()
     );
-    Ok(verdict == EquivalenceVerdict::Equivalent)
+    Ok((row, verdict == EquivalenceVerdict::Equivalent))
 }

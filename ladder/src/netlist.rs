@@ -97,8 +97,8 @@ pub fn simulate(block: &dyn Block, mapped: MappedParts<'_>, clocks: u64, seed: u
     blocks::check(block, &mut device, clocks, seed, &mut |_| {})
 }
 
-/// Checks whether the netlist is equivalent to the RTL, with files in `folder`. Each of ABC's engines gets the time
-/// limit `limit`.
+/// Checks whether the netlist is equivalent to the RTL, with files in `folder`. Each of ABC's engines gets `limit`
+/// of processor time.
 ///
 /// # Errors
 /// [`Error::ToolMissing`] without Yosys or its ABC; [`Error::ToolFailed`] where Yosys refuses RTL or netlist, for

@@ -10,7 +10,7 @@ use std::time::Duration;
 use posicast_hdl::emit::Module;
 
 use posicast_testbench::Error;
-use posicast_testbench::yosys::{abc, counterexample_clock, run_script};
+use posicast_testbench::yosys::{abc_within, counterexample_clock, run_script};
 
 use crate::netlist::EquivalenceVerdict;
 
@@ -79,7 +79,7 @@ impl<'a> Sides<'a> {
     }
 
     /// Runs the script `NAME.ys`, which writes `NAME.aig` with an assertion that no output differs, and decides the assertion. The search
-    /// for a difference covers `searched_clocks` clocks; each of ABC's engines gets the time limit `limit`. `joining` and `comparing`
+    /// for a difference covers `searched_clocks` clocks; each of ABC's engines gets `limit` of processor time. `joining` and `comparing`
     /// describe the two steps in messages.
     ///
     /// # Errors
@@ -95,13 +95,14 @@ impl<'a> Sides<'a> {
         self.write(&file, script)?;
         run_script(self.folder, &file, joining)?;
 
-        let seconds = limit.as_secs().max(1);
-        let proof = format!("read_aiger {name}.aig; fold; strash; scorr; pdr -T {seconds}");
-        if abc(self.folder, &proof, comparing)?.contains("Property proved") {
+        let proof = format!("read_aiger {name}.aig; fold; strash; scorr; pdr");
+        let said = abc_within(self.folder, &proof, comparing, limit)?;
+        if said.is_some_and(|said| said.contains("Property proved")) {
             return Ok(EquivalenceVerdict::Equivalent);
         }
-        let search = format!("read_aiger {name}.aig; fold; strash; bmc3 -F {searched_clocks} -T {seconds}");
-        let found = counterexample_clock(&abc(self.folder, &search, comparing)?);
+        let search = format!("read_aiger {name}.aig; fold; strash; bmc3 -F {searched_clocks}");
+        let said = abc_within(self.folder, &search, comparing, limit)?;
+        let found = said.and_then(|said| counterexample_clock(&said));
         Ok(
             found.map_or(EquivalenceVerdict::Unknown, |clock| EquivalenceVerdict::Different {
                 clock,

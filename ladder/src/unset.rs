@@ -54,7 +54,7 @@ pub fn check(block: &dyn Block, limit: Duration) -> Result<EquivalenceVerdict, E
 }
 
 /// Compares two copies of a block with the top module `top`, which has the inputs `clk` and `rst`, with files in `folder`. Each of
-/// ABC's engines gets the time limit `limit`.
+/// ABC's engines gets `limit` of processor time.
 ///
 /// # Errors
 /// [`Error::ToolMissing`] without Yosys or its ABC; [`Error::ToolFailed`] where Yosys refuses the Verilog; [`Error::File`] for the files.

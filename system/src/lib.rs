@@ -15,7 +15,9 @@
 //! - [`output`]: a file with a name that a user gave. It is written completely or not at all, never replaces an
 //!   input, and replaces another file only if posicast wrote that one.
 //! - [`kept`]: files that later runs use again, each with its checksum.
+//! - [`cores`]: independent pieces of work on all cores.
 
+pub mod cores;
 pub mod interrupt;
 pub mod kept;
 pub mod output;

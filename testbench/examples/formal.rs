@@ -10,6 +10,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 
+use posicast_system::cores;
 use posicast_testbench::Error;
 use posicast_testbench::blocks::{proofs, proofs_named};
 use posicast_testbench::formal::{ProofOutcome, ProofVerdict, Task, run};
@@ -44,12 +45,13 @@ fn prove() -> Result<bool, Error> {
 
     println!("| block | size | engine | assertions | result | covers reached | seconds |");
     println!("|---|---|---|---|---|---|---|");
-    let mut is_good = true;
-    for (at, task) in tasks.iter().enumerate() {
+    let tasks: Vec<(usize, Task)> = tasks.into_iter().enumerate().collect();
+    let proven = |(at, task): &(usize, Task)| {
         let outcome = run(task, &folder.join(format!("{at}_{}", task.name)), limit)?;
-        println!("{}", row(task, &outcome));
-        is_good &= outcome.is_good();
-    }
+        Ok::<_, Error>((row(task, &outcome), outcome.is_good()))
+    };
+    let rows = cores::each(&tasks, proven, |(row, _)| println!("{row}"))?;
+    let is_good = rows.iter().all(|(_, is_good)| *is_good);
     if kept.is_none() && is_good {
         // A file that cannot be deleted stays in the temporary folder; that is no reason to fail.
         let _ = std::fs::remove_dir_all(&temporary);

@@ -6,8 +6,9 @@
 
 use std::process::ExitCode;
 
+use posicast_system::cores;
 use posicast_testbench::Error;
-use posicast_testbench::blocks::library_named;
+use posicast_testbench::blocks::{Block, library_named};
 use posicast_testbench::crosssim::{CrosssimOutcome, outputs, run};
 use wavecmp::diff::DiffVerdict;
 
@@ -33,23 +34,23 @@ fn compare() -> Result<bool, Error> {
     let blocks = library_named(&arguments)?;
     println!("| block | instance | outputs | clocks | Verilator = Icarus | after reset, nothing preset | seconds |");
     println!("|---|---|---|---|---|---|---|");
-    let mut is_good = true;
-    for block in blocks {
+    let compared = |block: &dyn Block| -> Result<(String, bool), Error> {
         let folder = tempfile::tempdir()
             .map_err(|cause| Error::Option(format!("no temporary folder for the waveforms: {cause}")))?;
-        let outcome = run(block.as_ref(), clocks, 1, folder.path())?;
-        println!(
+        let outcome = run(block, clocks, 1, folder.path())?;
+        let row = format!(
             "| {} | {} | {} | {clocks} | {} | {} | {:.1} |",
             block.name(),
             block.instance(),
-            outputs(block.as_ref()),
+            outputs(block),
             verdict(&outcome, &outcome.waves),
             verdict(&outcome, &outcome.unset),
             outcome.time.as_secs_f64()
         );
-        is_good &= outcome.is_good();
-    }
-    Ok(is_good)
+        Ok((row, outcome.is_good()))
+    };
+    let rows = cores::each(&blocks, |block| compared(block.as_ref()), |(row, _)| println!("{row}"))?;
+    Ok(rows.iter().all(|(_, is_good)| *is_good))
 }
 
 fn verdict(outcome: &CrosssimOutcome, waves: &wavecmp::diff::Comparison) -> String {

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use crate::Error;
-use crate::formal::{self, ABC, YOSYS, asserted};
+use crate::formal::{ABC, YOSYS, asserted};
 pub use crate::tool::WAITED;
 
 /// Runs the Yosys script `script`, a file in `folder`. `doing` describes the task in an error.
@@ -17,18 +17,11 @@ pub fn run_script(folder: &Path, script: &str, doing: &'static str) -> Result<()
     YOSYS.run(&mut yosys, doing).map(drop)
 }
 
-/// Runs ABC's commands in `folder` and returns its output.
+/// Runs ABC's commands in `folder` and returns its output; `None` if ABC used more than `limit` of processor time, or took [`WAITED`] times
+/// as long.
 ///
 /// # Errors
 /// [`Error::ToolMissing`] without ABC, [`Error::ToolFailed`] where it stops with an error.
-pub fn abc(folder: &Path, commands: &str, doing: &'static str) -> Result<String, Error> {
-    formal::abc(folder, commands, doing)
-}
-
-/// As [`abc`]; `None` if ABC used more than `limit` of processor time, or took [`WAITED`] times as long.
-///
-/// # Errors
-/// As [`abc`].
 pub fn abc_within(
     folder: &Path,
     commands: &str,

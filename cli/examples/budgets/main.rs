@@ -16,18 +16,15 @@ mod table;
 
 use posicast_hdl::emit::Module;
 use posicast_synth::yosys::{Family, Mapping, Resources, Yosys};
+use posicast_system::cores;
 use posicast_testbench::blocks::{AreaRow, areas};
 use std::error::Error;
-use std::iter;
-use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Mutex;
-use std::thread;
 
 /// Figures of a row.
-struct Measured {
-    row: AreaRow,
+struct Measured<'a> {
+    row: &'a AreaRow,
     /// Checksum of its Verilog.
     checksum: String,
     resources: Resources,
@@ -59,7 +56,8 @@ fn main() -> Result<ExitCode, Failure> {
         known.len(),
         changed.len()
     );
-    let measured = measure_all(&yosys, changed, has("--write"))?;
+    let one = |row| measure(&yosys, row, has("--write"));
+    let measured = cores::each(&changed, |(at, row)| one(row).map(|measured| (*at, measured)), |_| ())?;
     if has("--write") {
         let mut lines: Vec<_> = known
             .iter()
@@ -85,30 +83,7 @@ fn main() -> Result<ExitCode, Failure> {
     Ok(ExitCode::FAILURE)
 }
 
-/// Measures the rows, one per core at a time, and returns them in their order, each with its place in the table.
-fn measure_all(yosys: &Yosys, rows: Vec<(usize, AreaRow)>, write: bool) -> Result<Vec<(usize, Measured)>, Failure> {
-    let cores = thread::available_parallelism().map_or(1, usize::from);
-    let waiting = Mutex::new(rows.into_iter());
-    let next = || waiting.lock().map_or(None, |mut rows| rows.next());
-    let measure_next = || {
-        iter::from_fn(next)
-            .map(|(at, row)| Ok((at, measure(yosys, row, write)?)))
-            .collect()
-    };
-    let mut measured: Vec<(usize, Measured)> = thread::scope(|scope| {
-        let workers: Vec<_> = (0..cores).map(|_| scope.spawn(measure_next)).collect();
-        let results = workers.into_iter().map(|worker| worker.join());
-        let rows = results.map(|rows| rows.unwrap_or_else(|panic| resume_unwind(panic)));
-        rows.collect::<Result<Vec<Vec<_>>, Failure>>()
-    })?
-    .into_iter()
-    .flatten()
-    .collect();
-    measured.sort_by_key(|(at, _)| *at);
-    Ok(measured)
-}
-
-fn measure(yosys: &Yosys, row: AreaRow, write: bool) -> Result<Measured, Failure> {
+fn measure<'a>(yosys: &Yosys, row: &'a AreaRow, write: bool) -> Result<Measured<'a>, Failure> {
     let folder = tempfile::tempdir()?;
     let written = |module: &Module| {
         let path = folder.path().join(format!("{}.v", module.name));
@@ -125,7 +100,7 @@ fn measure(yosys: &Yosys, row: AreaRow, write: bool) -> Result<Measured, Failure
     };
     let by_yosys = (write && row.block != table::STAGE).then(|| estimate(Mapping::Luts));
     Ok(Measured {
-        checksum: table::checksum(&row),
+        checksum: table::checksum(row),
         resources: estimate(Mapping::LogicElement)?.total,
         luts_by_yosys: by_yosys.transpose()?.map(|estimate| estimate.total.luts),
         row,

@@ -29,7 +29,7 @@ pub(crate) fn checksum(row: &AreaRow) -> String {
 }
 
 /// The line of a row.
-pub(crate) fn line(one: &Measured) -> String {
+pub(crate) fn line(one: &Measured<'_>) -> String {
     let Measured { row, resources, .. } = one;
     let budget = row.budget.map_or("–".to_owned(), |budget| {
         let above = resources.luts > budget.luts || resources.registers > budget.flip_flops;
@@ -140,9 +140,9 @@ impl Written {
     }
 
     /// One line for each figure that is larger than that of the page, or for a row that is not there.
-    pub(crate) fn grown(&self, one: &Measured) -> Vec<String> {
-        let name = name(&one.row);
-        let Some(before) = self.line(&one.row) else {
+    pub(crate) fn grown(&self, one: &Measured<'_>) -> Vec<String> {
+        let name = name(one.row);
+        let Some(before) = self.line(one.row) else {
             return vec![format!("{name}: is not in docs/area.md")];
         };
         let figures = COMPARED.iter().zip(numbers(&line(one))).zip(numbers(&before));

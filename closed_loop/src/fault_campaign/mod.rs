@@ -45,6 +45,7 @@ pub use report::{FaultReport, KindFigures};
 pub use run::{FaultOutcome, run_case};
 
 use std::ops::Range;
+use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
@@ -96,9 +97,8 @@ pub fn run(bed: &Bed, cases: Range<u64>, seed: u64, threads: usize) -> Result<Fa
     };
     thread::scope(|scope| {
         let workers: Vec<_> = (0..threads.clamp(1, 64)).map(|_| scope.spawn(work)).collect();
-        let joined = workers.into_iter().map(|worker| worker.join());
-        // A worker that panics has already printed why.
-        joined.flatten().collect::<Result<(), _>>()
+        let mut ended = workers.into_iter().map(|worker| worker.join());
+        ended.try_for_each(|worker| worker.unwrap_or_else(|panic| resume_unwind(panic)))
     })?;
     Ok(report.into_inner().unwrap_or_else(PoisonError::into_inner))
 }

@@ -24,6 +24,15 @@ enum Without {
 }
 
 impl Without {
+    /// Name of its files.
+    fn name(self) -> &'static str {
+        match self {
+            Self::MemoriesAndProducts => "without_memories_and_products",
+            Self::Memories => "without_memories",
+            Self::Nothing => "whole",
+        }
+    }
+
     /// Returns the commands that remove modules with such cells, except `kept`. ROMs stay, because their words are known.
     fn script(self, kept: &str) -> String {
         let cells = match self {
@@ -40,72 +49,109 @@ const DPROVE_LIMIT: Duration = Duration::from_secs(10);
 /// Processor time of ABC's `reach`, which has the rest of its engine's time beside it.
 const REACH_LIMIT: Duration = Duration::from_secs(20);
 
-/// Compares a mutant with its block. It takes at most about twelve times `limit` of processor time.
-///
-/// It first compares without memories and multipliers; if that gives no proof, with the multipliers, then with the
-/// memories too, as registers that begin as 0 in both. The module of the mutant is always included.
-pub(super) fn compare(netlist: &Netlist<'_>, mutant: &Mutant, limit: Duration) -> Result<EquivalenceVerdict, Error> {
-    let mut ways = vec![Without::MemoriesAndProducts];
-    if netlist.multiplies() {
-        ways.push(Without::Memories);
-    }
-    if (1..=MOST_MEMORY_BITS).contains(&netlist.memory_bits()) {
-        ways.push(Without::Nothing);
-    }
-    for without in &ways {
-        netlist.yosys("miter", &miter(netlist.top(), mutant, *without))?;
-        if prove(netlist, limit)? {
-            return Ok(EquivalenceVerdict::Equivalent);
-        }
-    }
-    // A difference counts only where the least is left out.
-    let commands = format!("read_aiger merged.aig; bmc3 -T {}", patience(limit));
-    let said = abc(netlist, &commands, limit)?;
-    let clock = said.and_then(|said| counterexample_clock(&said));
-    Ok(
-        clock.map_or(EquivalenceVerdict::Unknown, |clock| EquivalenceVerdict::Different {
-            clock,
-        }),
-    )
+/// What an engine says of a miter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Answer {
+    Proven,
+    Different,
+    Open,
 }
 
-/// Whether `miter.aig` is proven to have no difference.
-fn prove(netlist: &Netlist<'_>, limit: Duration) -> Result<bool, Error> {
-    // Signals that induction proves equal in both are merged; the remainder is small, and mostly empty. Counters that
-    // only take few values are fast with BDDs and slow with PDR, which needs a clause for each value.
-    let at = |name: &str| netlist.folder().join(name);
-    // If the first engine does not finish, the others use its input.
-    std::fs::copy(at("miter.aig"), at("merged.aig")).map_err(Error::file(&at("merged.aig"), "write"))?;
-    let engines = [
-        (
-            format!(
-                "read_aiger miter.aig; fold; strash; orpos; scorr; scorr -F 4; write_aiger merged.aig; reach -T {} -F 100000 -B {BDD_NODES}",
-                patience(REACH_LIMIT)
-            ),
-            limit.saturating_mul(2),
-        ),
-        // Induction, retiming and reachability in turn succeed quickly or not at all.
-        (
-            format!("read_aiger merged.aig; dprove -T {}", patience(DPROVE_LIMIT)),
-            DPROVE_LIMIT,
-        ),
-        (format!("read_aiger merged.aig; pdr -m -T {}", patience(limit)), limit),
-    ];
-    for (commands, limit) in engines {
-        let Some(said) = abc(netlist, &commands, limit)? else {
-            continue;
+impl Answer {
+    fn of(said: Option<&str>) -> Self {
+        let Some(said) = said else {
+            return Self::Open;
         };
-        if ["Property proved", "proved unreachable", "Networks are equivalent"]
-            .iter()
-            .any(|proof| said.contains(proof))
-        {
-            return Ok(true);
+        let proofs = ["Property proved", "proved unreachable", "Networks are equivalent"];
+        if proofs.iter().any(|proof| said.contains(proof)) {
+            return Self::Proven;
         }
-        if counterexample_clock(&said).is_some() {
-            return Ok(false);
+        counterexample_clock(said).map_or(Self::Open, |_| Self::Different)
+    }
+}
+
+/// A mutant beside its block. The quick engines come first, so that a search for a broken property can come before the slow one.
+///
+/// A comparison is first made without memories and multipliers; if that gives no proof, with the multipliers, then with the memories too,
+/// as registers that begin as 0 in both. The module of the mutant is always included.
+pub(super) struct Comparison<'a> {
+    netlist: &'a Netlist<'a>,
+    mutant: &'a Mutant,
+    limit: Duration,
+    ways: Vec<(Without, Answer)>,
+}
+
+impl<'a> Comparison<'a> {
+    /// `limit` is of the slow engines' processor time.
+    pub(super) fn new(netlist: &'a Netlist<'a>, mutant: &'a Mutant, limit: Duration) -> Self {
+        let mut ways = vec![Without::MemoriesAndProducts];
+        if netlist.multiplies() {
+            ways.push(Without::Memories);
+        }
+        if (1..=MOST_MEMORY_BITS).contains(&netlist.memory_bits()) {
+            ways.push(Without::Nothing);
+        }
+        Self {
+            netlist,
+            mutant,
+            limit,
+            ways: ways.into_iter().map(|without| (without, Answer::Open)).collect(),
         }
     }
-    Ok(false)
+
+    /// Whether the quick engines prove that no output ever differs.
+    pub(super) fn is_soon_proven(&mut self) -> Result<bool, Error> {
+        let Self { netlist, limit, .. } = *self;
+        for (without, answer) in &mut self.ways {
+            let name = without.name();
+            netlist.yosys("miter", &miter(netlist.top(), self.mutant, *without))?;
+            // If the first engine does not finish, the others use its input.
+            let at = |end: &str| netlist.folder().join(format!("{name}{end}.aig"));
+            std::fs::copy(at(""), at("_merged")).map_err(Error::file(&at("_merged"), "write"))?;
+            // Signals that induction proves equal in both are merged; the remainder is small, and mostly empty. Counters that
+            // only take few values are fast with BDDs and slow with PDR, which needs a clause for each value.
+            let merge = format!(
+                "read_aiger {name}.aig; fold; strash; orpos; scorr; scorr -F 4; write_aiger {name}_merged.aig; reach -T {} -F 100000 -B {BDD_NODES}",
+                patience(REACH_LIMIT)
+            );
+            // Induction, retiming and reachability in turn succeed quickly or not at all.
+            let dprove = format!("read_aiger {name}_merged.aig; dprove -T {}", patience(DPROVE_LIMIT));
+            for (commands, limit) in [(merge, limit.saturating_mul(2)), (dprove, DPROVE_LIMIT)] {
+                *answer = Answer::of(abc(netlist, &commands, limit)?.as_deref());
+                if *answer != Answer::Open {
+                    break;
+                }
+            }
+            if *answer == Answer::Proven {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// Decides with the slow engines what [`is_soon_proven`](Self::is_soon_proven) left open.
+    pub(super) fn verdict(&self) -> Result<EquivalenceVerdict, Error> {
+        let Self { netlist, limit, .. } = *self;
+        for (without, _) in self.ways.iter().filter(|(_, answer)| *answer == Answer::Open) {
+            let pdr = format!(
+                "read_aiger {}_merged.aig; pdr -m -T {}",
+                without.name(),
+                patience(limit)
+            );
+            if Answer::of(abc(netlist, &pdr, limit)?.as_deref()) == Answer::Proven {
+                return Ok(EquivalenceVerdict::Equivalent);
+            }
+        }
+        // A difference counts only where the least is left out.
+        let least = self.ways.last().map_or("", |(without, _)| without.name());
+        let search = format!("read_aiger {least}_merged.aig; bmc3 -T {}", patience(limit));
+        let clock = abc(netlist, &search, limit)?.and_then(|said| counterexample_clock(&said));
+        Ok(
+            clock.map_or(EquivalenceVerdict::Unknown, |clock| EquivalenceVerdict::Different {
+                clock,
+            }),
+        )
+    }
 }
 
 /// ABC's own limit, in seconds on the clock, of a command that may compute for `limit`.
@@ -118,9 +164,11 @@ fn abc(netlist: &Netlist<'_>, commands: &str, limit: Duration) -> Result<Option<
     abc_within(netlist.folder(), commands, "comparing a mutant", limit)
 }
 
-/// Returns the script that writes `miter.aig`. Its one output is 1 if an output of the two designs differs.
+/// Returns the script that writes the miter's file, which has the name of `without`. Its one output is 1 if an output of the two designs
+/// differs.
 fn miter(top: &str, mutant: &Mutant, without: Without) -> String {
     let Mutant { arguments, module, .. } = mutant;
+    let file = without.name();
     let boxes = without.script(module);
     let side = |name: &str, change: &str| {
         format!(
@@ -134,6 +182,6 @@ fn miter(top: &str, mutant: &Mutant, without: Without) -> String {
          design -copy-from block block\ndesign -copy-from mutant mutant\n\
          miter -equiv -flatten -make_assert block mutant miter\nhierarchy -top miter\ndelete -output\n\
          opt -nodffe -nosdff -fast\nmemory\nsetundef -init -zero\nasync2sync\ndffunmap\ntechmap\nopt -fast\ndffunmap\nabc -g AND -fast\nopt_clean\n\
-         write_aiger -I -B -zinit -no-startoffset miter.aig\n"
+         write_aiger -I -B -zinit -no-startoffset {file}.aig\n"
     )
 }

@@ -44,6 +44,7 @@ pub use self::wires::{
 use std::path::Path;
 use std::time::Duration;
 
+use self::equivalence::Comparison;
 use self::netlist::Netlist;
 use crate::netlist::EquivalenceVerdict;
 use posicast_testbench::Error;
@@ -157,11 +158,16 @@ fn survivor(
     mutant: &Mutant,
     options: &MutationOptions,
 ) -> Result<Fate, Error> {
-    let differs = match equivalence::compare(netlist, mutant, options.proof)? {
-        EquivalenceVerdict::Equivalent => return Ok(Fate::Equivalent),
-        EquivalenceVerdict::Different { clock } => Some(clock),
-        EquivalenceVerdict::Unknown => None,
-    };
-    let broken = properties::broken(subject, netlist, mutant, options.proof)?;
-    Ok(broken.map_or(Fate::Unknown { differs }, Fate::Property))
+    let mut comparison = Comparison::new(netlist, mutant, options.proof);
+    if comparison.is_soon_proven()? {
+        return Ok(Fate::Equivalent);
+    }
+    if let Some(property) = properties::broken(subject, netlist, mutant, options.proof)? {
+        return Ok(Fate::Property(property));
+    }
+    Ok(match comparison.verdict()? {
+        EquivalenceVerdict::Equivalent => Fate::Equivalent,
+        EquivalenceVerdict::Different { clock } => Fate::Unknown { differs: Some(clock) },
+        EquivalenceVerdict::Unknown => Fate::Unknown { differs: None },
+    })
 }

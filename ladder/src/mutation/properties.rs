@@ -23,7 +23,7 @@ pub(super) fn broken(
         let mut task = task.clone();
         task.modules.clone_from(&modules);
         let folder = netlist.folder().join(format!("properties_{}_{at}", mutant.number));
-        if let ProofVerdict::Counterexample { property, .. } = formal::run(&task, &folder, limit)?.verdict {
+        if let ProofVerdict::Counterexample { property, .. } = formal::search(&task, &folder, limit)? {
             return Ok(Some(property));
         }
     }

@@ -27,5 +27,5 @@ mod tool;
 pub use self::missing::missing_tools;
 pub use self::task::{Engine, Task};
 pub(crate) use self::task::{INDUCTION, part, refused};
-pub(crate) use self::tool::{ABC, YOSYS, abc, asserted};
+pub(crate) use self::tool::{ABC, YOSYS, asserted};
 pub use self::tool::{ProofOutcome, ProofVerdict, Reached, SEARCHED_CLOCKS, files, proves, run, search};

@@ -215,7 +215,9 @@ impl<'a> Bench<'a> {
     }
 
     fn abc(&self, commands: &str) -> Result<String, Error> {
-        abc(self.folder, commands, "proving")
+        let mut abc = ABC.command_in(self.folder);
+        abc.args(["-c", commands]);
+        ABC.run(&mut abc, "proving").map(|output| text(&output))
     }
 
     /// The labels of assertions or covers, in the order of ABC's outputs.
@@ -331,13 +333,6 @@ pub(super) fn input_files(task: &Task, kinds: &[(&str, &str)]) -> Vec<(String, S
     ));
     files.push(("prepare.ys".to_owned(), script));
     files
-}
-
-/// ABC's output for these commands, run in `folder`.
-pub(crate) fn abc(folder: &Path, commands: &str, doing: &'static str) -> Result<String, Error> {
-    let mut abc = ABC.command_in(folder);
-    abc.args(["-c", commands]);
-    ABC.run(&mut abc, doing).map(|output| text(&output))
 }
 
 /// Outputs and clocks from ABC's messages: `Output 3 of miter "asserts" was asserted in frame 12.`
