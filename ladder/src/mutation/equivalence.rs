@@ -70,7 +70,7 @@ impl Answer {
     }
 }
 
-/// A mutant beside its block. The quick engines come first, so that a search for a broken property can come before the slow one.
+/// A mutant beside its block. The quick engines come first, so that a search for a broken property can come before the slow ones.
 ///
 /// A comparison is first made without memories and multipliers; if that gives no proof, with the multipliers, then with the memories too,
 /// as registers that begin as 0 in both. The module of the mutant is always included.
@@ -78,72 +78,54 @@ pub(super) struct Comparison<'a> {
     netlist: &'a Netlist<'a>,
     mutant: &'a Mutant,
     limit: Duration,
-    ways: Vec<(Without, Answer)>,
+    /// What quick engines found without memories.
+    found: Vec<(Without, Answer)>,
 }
 
 impl<'a> Comparison<'a> {
     /// `limit` is of the slow engines' processor time.
     pub(super) fn new(netlist: &'a Netlist<'a>, mutant: &'a Mutant, limit: Duration) -> Self {
-        let mut ways = vec![Without::MemoriesAndProducts];
-        if netlist.multiplies() {
-            ways.push(Without::Memories);
-        }
-        if (1..=MOST_MEMORY_BITS).contains(&netlist.memory_bits()) {
-            ways.push(Without::Nothing);
-        }
         Self {
             netlist,
             mutant,
             limit,
-            ways: ways.into_iter().map(|without| (without, Answer::Open)).collect(),
+            found: Vec::new(),
         }
     }
 
-    /// Whether the quick engines prove that no output ever differs.
+    /// Whether the quick engines prove that no output ever differs, for any contents of memories.
     pub(super) fn is_soon_proven(&mut self) -> Result<bool, Error> {
-        let Self { netlist, limit, .. } = *self;
-        for (without, answer) in &mut self.ways {
-            let name = without.name();
-            netlist.yosys("miter", &miter(netlist.top(), self.mutant, *without))?;
-            // If the first engine does not finish, the others use its input.
-            let at = |end: &str| netlist.folder().join(format!("{name}{end}.aig"));
-            std::fs::copy(at(""), at("_merged")).map_err(Error::file(&at("_merged"), "write"))?;
-            // Signals that induction proves equal in both are merged; the remainder is small, and mostly empty. Counters that
-            // only take few values are fast with BDDs and slow with PDR, which needs a clause for each value.
-            let merge = format!(
-                "read_aiger {name}.aig; fold; strash; orpos; scorr; scorr -F 4; write_aiger {name}_merged.aig; reach -T {} -F 100000 -B {BDD_NODES}",
-                patience(REACH_LIMIT)
-            );
-            // Induction, retiming and reachability in turn succeed quickly or not at all.
-            let dprove = format!("read_aiger {name}_merged.aig; dprove -T {}", patience(DPROVE_LIMIT));
-            for (commands, limit) in [(merge, limit.saturating_mul(2)), (dprove, DPROVE_LIMIT)] {
-                *answer = Answer::of(abc(netlist, &commands, limit)?.as_deref());
-                if *answer != Answer::Open {
-                    break;
-                }
-            }
-            if *answer == Answer::Proven {
+        let products = self.netlist.multiplies().then_some(Without::Memories);
+        for without in [Without::MemoriesAndProducts].into_iter().chain(products) {
+            let answer = self.quickly(without)?;
+            if answer == Answer::Proven {
                 return Ok(true);
             }
+            self.found.push((without, answer));
         }
         Ok(false)
     }
 
-    /// Decides with the slow engines what [`is_soon_proven`](Self::is_soon_proven) left open.
-    pub(super) fn verdict(&self) -> Result<EquivalenceVerdict, Error> {
-        let Self { netlist, limit, .. } = *self;
-        for (without, _) in self.ways.iter().filter(|(_, answer)| *answer == Answer::Open) {
-            let pdr = format!(
-                "read_aiger {}_merged.aig; pdr -m -T {}",
-                without.name(),
-                patience(limit)
-            );
-            if Answer::of(abc(netlist, &pdr, limit)?.as_deref()) == Answer::Proven {
+    /// Decides what [`is_soon_proven`](Self::is_soon_proven) left open. It takes at most about twelve times the limit.
+    pub(super) fn verdict(mut self) -> Result<EquivalenceVerdict, Error> {
+        let Self { netlist, limit, .. } = self;
+        for (without, answer) in &self.found {
+            if *answer == Answer::Open && self.slowly(*without)? == Answer::Proven {
                 return Ok(EquivalenceVerdict::Equivalent);
             }
         }
+        if (1..=MOST_MEMORY_BITS).contains(&netlist.memory_bits()) {
+            let answer = match self.quickly(Without::Nothing)? {
+                Answer::Open => self.slowly(Without::Nothing)?,
+                answer => answer,
+            };
+            if answer == Answer::Proven {
+                return Ok(EquivalenceVerdict::Equivalent);
+            }
+            self.found.push((Without::Nothing, answer));
+        }
         // A difference counts only where the least is left out.
-        let least = self.ways.last().map_or("", |(without, _)| without.name());
+        let least = self.found.last().map_or("", |(without, _)| without.name());
         let search = format!("read_aiger {least}_merged.aig; bmc3 -T {}", patience(limit));
         let clock = abc(netlist, &search, limit)?.and_then(|said| counterexample_clock(&said));
         Ok(
@@ -151,6 +133,39 @@ impl<'a> Comparison<'a> {
                 clock,
             }),
         )
+    }
+
+    /// Makes the miter, merges what is equal, and asks the engines that take seconds.
+    fn quickly(&self, without: Without) -> Result<Answer, Error> {
+        let Self { netlist, limit, .. } = *self;
+        let name = without.name();
+        netlist.yosys("miter", &miter(netlist.top(), self.mutant, without))?;
+        // If the first engine does not finish, the others use its input.
+        let at = |end: &str| netlist.folder().join(format!("{name}{end}.aig"));
+        std::fs::copy(at(""), at("_merged")).map_err(Error::file(&at("_merged"), "write"))?;
+        // Signals that induction proves equal in both are merged; the remainder is small, and mostly empty. Counters that
+        // only take few values are fast with BDDs and slow with PDR, which needs a clause for each value.
+        let merge = format!(
+            "read_aiger {name}.aig; fold; strash; orpos; scorr; scorr -F 4; write_aiger {name}_merged.aig; reach -T {} -F 100000 -B {BDD_NODES}",
+            patience(REACH_LIMIT)
+        );
+        let answer = Answer::of(abc(netlist, &merge, limit.saturating_mul(2))?.as_deref());
+        if answer != Answer::Open {
+            return Ok(answer);
+        }
+        // Induction, retiming and reachability in turn succeed quickly or not at all.
+        let dprove = format!("read_aiger {name}_merged.aig; dprove -T {}", patience(DPROVE_LIMIT));
+        Ok(Answer::of(abc(netlist, &dprove, DPROVE_LIMIT)?.as_deref()))
+    }
+
+    /// Asks the engine that takes as long as it may, after [`quickly`](Self::quickly).
+    fn slowly(&self, without: Without) -> Result<Answer, Error> {
+        let pdr = format!(
+            "read_aiger {}_merged.aig; pdr -m -T {}",
+            without.name(),
+            patience(self.limit)
+        );
+        Ok(Answer::of(abc(self.netlist, &pdr, self.limit)?.as_deref()))
     }
 }
 
