@@ -62,6 +62,11 @@ ports! {
 pub struct Group {
     ports: Vec<Port>,
     axes: usize,
+    state: State,
+}
+
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+struct State {
     /// Axes to start, one bit per axis.
     starts: u64,
     stops: u64,
@@ -76,32 +81,39 @@ impl Group {
         Self {
             ports: ports(axes),
             axes,
-            starts: 0,
-            stops: 0,
-            holds: 0,
-            emergency_stop: false,
-            refused: false,
+            state: State::default(),
         }
     }
+}
 
-    /// Simulates one clock. `can`, `wants`, `emergency`, `feed_hold` and `rests` have one bit per axis.
-    fn clock(&mut self, start: Option<u64>, [can, wants, emergency, feed_hold, rests]: [u64; LISTS]) {
+impl State {
+    /// The registers after a clock. `can`, `wants`, `emergency`, `feed_hold` and `rests` have one bit per axis.
+    fn after(axes: usize, start: Option<u64>, [can, wants, emergency, feed_hold, rests]: [u64; LISTS]) -> Self {
         let wanted = start.unwrap_or(0);
         let granted = wanted & !can == 0;
-        self.starts = if granted { wanted } else { 0 };
-        self.refused = start.is_some() && (!granted || wanted == 0);
         let others = |axis: usize| wants & !(1 << axis) != 0;
-        self.stops = (0..self.axes).fold(0, |stops, axis| stops | u64::from(others(axis)) << axis);
-        self.emergency_stop = emergency != 0;
-        self.holds = if feed_hold & !rests == 0 { feed_hold } else { 0 };
+        Self {
+            starts: if granted { wanted } else { 0 },
+            refused: start.is_some() && (!granted || wanted == 0),
+            stops: (0..axes).fold(0, |stops, axis| stops | u64::from(others(axis)) << axis),
+            emergency_stop: emergency != 0,
+            holds: if feed_hold & !rests == 0 { feed_hold } else { 0 },
+        }
     }
 }
 
 impl Moore for Group {
     fn show(&self, outputs: &mut [u64]) {
         let bits = |word: u64| (0..self.axes).map(move |axis| word >> axis & 1);
-        let shown = bits(self.starts).chain(bits(self.stops)).chain(bits(self.holds));
-        let shown = shown.chain([self.emergency_stop.into(), self.refused.into()]);
+        let State {
+            starts,
+            stops,
+            holds,
+            emergency_stop,
+            refused,
+        } = self.state;
+        let shown = bits(starts).chain(bits(stops)).chain(bits(holds));
+        let shown = shown.chain([emergency_stop.into(), refused.into()]);
         show_each(outputs, shown);
     }
 
@@ -109,18 +121,8 @@ impl Moore for Group {
         if (inputs[0] | inputs[1]) & 1 != 0 {
             return 0;
         }
-        let mut next = self.clone();
-        next.clock(None, words(inputs, self.axes));
-        let shown = |group: &Self| {
-            (
-                group.starts,
-                group.stops,
-                group.holds,
-                group.emergency_stop,
-                group.refused,
-            )
-        };
-        if shown(&next) == shown(self) { FOREVER } else { 0 }
+        let next = State::after(self.axes, None, words(inputs, self.axes));
+        if next == self.state { FOREVER } else { 0 }
     }
 }
 
@@ -146,12 +148,12 @@ impl ClockedBlock for Group {
             )));
         }
         self.show(outputs);
-        if inputs[0] & 1 != 0 {
-            *self = Self::new(axes);
-            return Ok(());
-        }
-        let start = (inputs[1] & 1 != 0).then_some(inputs[2] & ((1 << MOST_AXES) - 1));
-        self.clock(start, words(inputs, axes));
+        self.state = if inputs[0] & 1 != 0 {
+            State::default()
+        } else {
+            let start = (inputs[1] & 1 != 0).then_some(inputs[2] & ((1 << MOST_AXES) - 1));
+            State::after(axes, start, words(inputs, axes))
+        };
         Ok(())
     }
 }

@@ -131,6 +131,14 @@ pub trait ClockedBlock {
     /// [`StepError`] where a simulator fails; a model never fails.
     fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError>;
 
+    /// Does the same without outputs, for callers that show them otherwise. `scratch` has a value per output port, and means nothing afterwards.
+    ///
+    /// # Errors
+    /// Those of [`step`](Self::step).
+    fn advance(&mut self, inputs: &[u64], scratch: &mut [u64]) -> Result<(), StepError> {
+        self.step(inputs, scratch)
+    }
+
     /// The composition, whose nets give access to the inside; `None` for simulators, and for blocks that are not compositions.
     fn composed(&self) -> Option<&composition::Composed> {
         None

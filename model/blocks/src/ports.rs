@@ -560,17 +560,28 @@ macro_rules! clocked_block {
             }
 
             fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), $crate::StepError> {
-                let (Ok(raw), OUTPUT_PORTS) = (<&[u64; INPUT_PORTS]>::try_from(inputs), outputs.len()) else {
-                    return Err($crate::StepError(format!(
+                let shown = $block::step(self, &Inputs::checked(inputs, outputs)?);
+                outputs.copy_from_slice(&shown.to_raw());
+                Ok(())
+            }
+
+            fn advance(&mut self, inputs: &[u64], scratch: &mut [u64]) -> Result<(), $crate::StepError> {
+                $block::step(self, &Inputs::checked(inputs, scratch)?);
+                Ok(())
+            }
+        }
+
+        impl Inputs {
+            fn checked(inputs: &[u64], outputs: &[u64]) -> Result<Self, $crate::StepError> {
+                match (<&[u64; INPUT_PORTS]>::try_from(inputs), outputs.len()) {
+                    (Ok(raw), OUTPUT_PORTS) => Ok(Self::from_raw(raw)),
+                    _ => Err($crate::StepError(format!(
                         "{} inputs and {} outputs: {} has {INPUT_PORTS} and {OUTPUT_PORTS}",
                         inputs.len(),
                         outputs.len(),
                         $what
-                    )));
-                };
-                let shown = $block::step(self, &Inputs::from_raw(raw));
-                outputs.copy_from_slice(&shown.to_raw());
-                Ok(())
+                    ))),
+                }
             }
         }
     };

@@ -1,7 +1,7 @@
 //! The blocks of a composition, simulated together; each is clocked only when something happens in it.
 
 use super::member::Member;
-use super::wire::Wire;
+use super::wire::{MemberInput, Wire};
 use super::{Composition, Net};
 use crate::{ClockedBlock, Direction, Moore, OutputKind, Port, StepError};
 
@@ -20,19 +20,23 @@ use crate::{ClockedBlock, Direction, Moore, OutputKind, Port, StepError};
 pub struct Composed {
     composition: Composition,
     members: Vec<Member>,
-    /// Indices of the members that must be clocked next, and for each member whether it is one of them.
-    due: Vec<usize>,
-    is_due: Vec<bool>,
+    /// The members that must be clocked next.
+    due: Due,
     /// The clock in which each other member must be clocked.
     wakes: Vec<u64>,
     /// None of them must be clocked before this clock.
     next_wake: u64,
     wires: Vec<Wire>,
-    input_count: usize,
-    /// Net of each output of the composition.
-    output_nets: Vec<usize>,
+    /// Values of the inputs, whose nets come first.
+    inputs: Vec<u64>,
+    /// Values of the outputs, but for those that count.
+    outputs: Vec<u64>,
+    /// Indices of the outputs that count, with their nets.
+    counters: Vec<(usize, usize)>,
     /// Indices of the members with combinational outputs, in order.
     combinational: Vec<usize>,
+    /// For each member, whether its combinational outputs are up to date with its state and inputs.
+    is_combined: Vec<bool>,
     /// The next clock, counted from 1.
     now: u64,
     /// Indices of the members that were clocked in this clock.
@@ -41,6 +45,30 @@ pub struct Composed {
     changes: Vec<(usize, u64)>,
     /// Whether an output was set since `hold` began.
     shows_anew: bool,
+}
+
+/// Members to be clocked, in the order in which that became known.
+#[derive(Default)]
+struct Due {
+    list: Vec<usize>,
+    /// For each member, whether it is in the list.
+    is_in: Vec<bool>,
+}
+
+impl Due {
+    #[inline]
+    fn add(&mut self, member: usize) {
+        if !self.is_in[member] {
+            self.is_in[member] = true;
+            self.list.push(member);
+        }
+    }
+
+    /// Moves the members into an empty list.
+    fn take(&mut self, members: &mut Vec<usize>) {
+        std::mem::swap(&mut self.list, members);
+        members.iter().for_each(|member| self.is_in[*member] = false);
+    }
 }
 
 impl Composed {
@@ -66,17 +94,28 @@ impl Composed {
             .enumerate()
             .filter(|(_, member)| member.is_combinational());
         let output_nets: Vec<usize> = outputs.filter_map(net).collect();
-        for net in &output_nets {
-            wires[*net].is_output = true;
+        for (output, net) in output_nets.iter().enumerate() {
+            wires[*net].output = Some(output);
         }
-        let all: Vec<usize> = (0..members.len()).collect();
+        let counters = output_nets.iter().copied().enumerate();
+        let mut due = Due {
+            list: Vec::new(),
+            is_in: vec![false; members.len()],
+        };
+        (0..members.len()).for_each(|member| due.add(member));
         let mut composed = Self {
-            input_count: composition.nets.iter().filter(|net| net.driver.is_none()).count(),
-            output_nets,
+            inputs: composition
+                .nets
+                .iter()
+                .filter(|net| net.driver.is_none())
+                .map(|_| 0)
+                .collect(),
+            outputs: vec![0; output_nets.len()],
+            counters: counters.filter(|(_, net)| wires[*net].counts()).collect(),
             combinational: combinational.map(|(at, _)| at).collect(),
-            clocked: all.clone(),
-            due: all,
-            is_due: vec![true; members.len()],
+            is_combined: vec![false; members.len()],
+            clocked: due.list.clone(),
+            due,
             wakes: vec![u64::MAX; members.len()],
             next_wake: u64::MAX,
             changes: Vec::new(),
@@ -116,7 +155,7 @@ impl Composed {
         let start = self.now;
         let end = start.saturating_add(clocks);
         while self.now < end {
-            if self.due.is_empty() && self.next_wake > self.now {
+            if self.due.list.is_empty() && self.next_wake > self.now {
                 self.now = self.next_wake.min(end);
                 continue;
             }
@@ -131,51 +170,68 @@ impl Composed {
     }
 
     fn check(&self, inputs: &[u64], outputs: &[u64]) -> Result<(), StepError> {
-        if (inputs.len(), outputs.len()) == (self.input_count, self.output_nets.len()) {
+        if (inputs.len(), outputs.len()) == (self.inputs.len(), self.outputs.len()) {
             return Ok(());
         }
         Err(StepError(format!(
             "{} inputs and {} outputs: the composition has {} and {}",
             inputs.len(),
             outputs.len(),
-            self.input_count,
-            self.output_nets.len()
+            self.inputs.len(),
+            self.outputs.len()
         )))
     }
 
     /// Whether the outputs still show what they showed this many clocks ago.
     fn shows(&self, outputs: &[u64], clocks: u64) -> bool {
-        let wires = self.output_nets.iter().map(|net| &self.wires[*net]);
-        let mut pairs = wires.zip(outputs);
-        pairs.all(|(wire, output)| wire.at(self.now) == wire.later(*output, clocks))
+        let pairs = self.outputs.iter().zip(outputs).enumerate();
+        let mut differ = pairs.filter(|(_, (now, before))| now != before);
+        let counts = |at: usize| self.counters.iter().any(|(output, _)| *output == at);
+        differ.all(|(at, _)| counts(at))
+            && self.counters.iter().all(|(output, net)| {
+                let wire = &self.wires[*net];
+                wire.at(self.now) == wire.later(outputs[*output], clocks)
+            })
     }
 
     /// Sets a net from now on, and wakes its watchers.
     #[inline]
     fn set(&mut self, net: usize, value: u64) {
-        let wire = &mut self.wires[net];
-        if !wire.set(value, self.now) {
+        let (now, wire) = (self.now, &self.wires[net]);
+        if wire.at(now) == value {
             return;
         }
-        self.shows_anew |= wire.is_output;
-        for watcher in &wire.watchers {
-            self.members[*watcher].has_new_inputs();
-            self.members[*watcher].is_combined = false;
-            if !self.is_due[*watcher] {
-                self.is_due[*watcher] = true;
-                self.due.push(*watcher);
+        if let Some(output) = wire.output {
+            self.outputs[output] = value;
+            self.shows_anew = true;
+        }
+        for MemberInput { member, input } in &wire.watchers {
+            self.members[*member].take(*input, value, &self.wires, now);
+            self.is_combined[*member] = false;
+            self.due.add(*member);
+        }
+        for MemberInput { member, input } in &wire.ignorers {
+            self.members[*member].take(*input, value, &self.wires, now);
+        }
+        self.wires[net].set(value, now);
+    }
+
+    /// Sets the inputs of the coming clock.
+    fn take(&mut self, inputs: &[u64]) {
+        for (net, value) in inputs.iter().enumerate() {
+            if self.inputs[net] != *value {
+                self.inputs[net] = *value;
+                self.set(net, *value);
             }
         }
-        for ignorer in &wire.ignorers {
-            self.members[*ignorer].has_new_inputs();
-        }
+        self.combine();
     }
 
     /// Updates combinational outputs of the members that were clocked or have new inputs.
     fn combine(&mut self) {
         for place in 0..self.combinational.len() {
             let at = self.combinational[place];
-            if self.members[at].is_combined {
+            if std::mem::replace(&mut self.is_combined[at], true) {
                 continue;
             }
             self.members[at].combine(&self.wires, self.now);
@@ -190,15 +246,14 @@ impl Composed {
     /// Lets a member that was clocked sleep until its next event or a change of an input.
     #[inline]
     fn sleep(&mut self, at: usize) {
-        if self.is_due[at] || !self.members[at].is_clocked_to(self.now) {
+        if self.due.is_in[at] || !self.members[at].is_clocked_to(self.now) {
             return;
         }
         self.wakes[at] = self.members[at].sleep_until(self.now);
         if self.wakes[at] > self.now {
             self.next_wake = self.next_wake.min(self.wakes[at]);
         } else {
-            self.is_due[at] = true;
-            self.due.push(at);
+            self.due.add(at);
         }
     }
 
@@ -208,9 +263,8 @@ impl Composed {
         for (at, wake) in self.wakes.iter().enumerate() {
             if *wake > self.now {
                 self.next_wake = self.next_wake.min(*wake);
-            } else if !self.is_due[at] {
-                self.is_due[at] = true;
-                self.due.push(at);
+            } else {
+                self.due.add(at);
             }
         }
     }
@@ -221,10 +275,10 @@ impl Composed {
             self.wake();
         }
         self.clocked.clear();
-        std::mem::swap(&mut self.clocked, &mut self.due);
+        self.due.take(&mut self.clocked);
         for at in &self.clocked {
-            self.is_due[*at] = false;
             self.wakes[*at] = u64::MAX;
+            self.is_combined[*at] = false;
             self.members[*at].clock(&self.wires, self.now)?;
         }
         self.now += 1;
@@ -236,11 +290,12 @@ impl Composed {
     /// allow it.
     fn settle(&mut self) {
         let mut changes = std::mem::take(&mut self.changes);
+        changes.clear();
         for at in &self.clocked {
             self.members[*at].show(&mut changes);
         }
-        for (net, value) in changes.drain(..) {
-            self.set(net, value);
+        for (net, value) in &changes {
+            self.set(*net, *value);
         }
         self.changes = changes;
         for place in 0..self.clocked.len() {
@@ -276,6 +331,12 @@ impl ClockedBlock for Composed {
         self.clock()
     }
 
+    fn advance(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
+        self.check(inputs, outputs)?;
+        self.take(inputs);
+        self.clock()
+    }
+
     fn composed(&self) -> Option<&Composed> {
         Some(self)
     }
@@ -283,8 +344,9 @@ impl ClockedBlock for Composed {
 
 impl Moore for Composed {
     fn show(&self, outputs: &mut [u64]) {
-        for (output, net) in outputs.iter_mut().zip(&self.output_nets) {
-            *output = self.wires[*net].at(self.now);
+        outputs.copy_from_slice(&self.outputs);
+        for (output, net) in &self.counters {
+            outputs[*output] = self.wires[*net].at(self.now);
         }
     }
 
@@ -295,18 +357,15 @@ impl Moore for Composed {
     }
 
     fn show_with(&mut self, inputs: &[u64], outputs: &mut [u64]) {
-        for (net, value) in inputs.iter().enumerate().take(self.input_count) {
-            self.set(net, *value);
-        }
-        self.combine();
+        self.take(inputs);
         self.show(outputs);
     }
 
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
-        let combined = self.combinational.iter().all(|at| self.members[*at].is_combined);
-        let watched = self.wires.iter().zip(inputs).take(self.input_count);
-        let mut watched = watched.filter(|(wire, _)| !wire.watchers.is_empty());
-        if combined && self.due.is_empty() && watched.all(|(wire, value)| wire.at(self.now) == *value) {
+        let combined = self.combinational.iter().all(|at| self.is_combined[*at]);
+        let values = self.inputs.iter().zip(inputs).enumerate();
+        let mut changed = values.filter(|(_, (before, value))| before != value);
+        if combined && self.due.list.is_empty() && changed.all(|(net, _)| self.wires[net].watchers.is_empty()) {
             self.next_wake.saturating_sub(self.now)
         } else {
             0
@@ -315,16 +374,19 @@ impl Moore for Composed {
 
     fn pass(&mut self, inputs: &[u64], clocks: u64) {
         self.now += clocks;
-        for (wire, value) in self.wires.iter_mut().zip(inputs).take(self.input_count) {
-            if wire.set(*value, self.now - 1) {
-                let readers = wire.watchers.iter().chain(&wire.ignorers);
-                readers.for_each(|reader| self.members[*reader].has_new_inputs());
+        for (net, value) in inputs.iter().enumerate() {
+            if self.inputs[net] != *value {
+                self.inputs[net] = *value;
+                self.wires[net].set(*value, self.now - 1);
+                for MemberInput { member, input } in &self.wires[net].ignorers {
+                    self.members[*member].take_unnoticed(*input, *value);
+                }
             }
         }
     }
 
     fn ignores(&self, input: &str) -> bool {
-        let inputs = self.composition.nets.iter().zip(&self.wires).take(self.input_count);
+        let inputs = self.composition.nets.iter().zip(&self.wires).take(self.inputs.len());
         let mut named = inputs.filter(|(net, _)| net.port.name == input);
         named.all(|(_, wire)| wire.watchers.is_empty())
     }

@@ -1,6 +1,6 @@
 //! A block in a composition, with the clock up to which it has been simulated.
 
-use super::wire::Wire;
+use super::wire::{MemberInput, Wire};
 use super::{Connection, Part};
 use crate::{Direction, Moore, OutputKind, StepError};
 
@@ -8,16 +8,12 @@ use crate::{Direction, Moore, OutputKind, StepError};
 /// the clock given by [`sleep_until`](Self::sleep_until), unless an input changes.
 pub(super) struct Member {
     pub(super) block: Box<dyn Moore>,
-    /// Indices of inputs with their nets; the other inputs are constants.
-    inputs_from: Vec<(usize, usize)>,
+    /// The inputs as of the next clock, but for those of `counters_from`.
     inputs: Vec<u64>,
-    /// Whether no input has changed since they were read, and the clock as of which that was.
-    is_read: bool,
-    read_clock: u64,
-    /// Whether it reads a net that counts, so that its inputs change without notice.
-    reads_counter: bool,
-    /// The net of each output, if that is one of registers that do not count.
-    registers_to: Vec<Option<usize>>,
+    /// Indices of inputs with their nets that count, and so change without notice.
+    counters_from: Vec<(usize, usize)>,
+    /// Indices of outputs of registers that do not count, with their nets.
+    registers_to: Vec<(usize, usize)>,
     /// Indices of outputs that count, with their nets.
     counters_to: Vec<(usize, usize)>,
     pub(super) combinational_to: Vec<(usize, usize)>,
@@ -28,8 +24,6 @@ pub(super) struct Member {
     /// Whether it watches a net that counts, so that it must be clocked in every clock.
     never_sleeps: bool,
     clocked_to: u64,
-    /// Whether its combinational outputs are up to date with its state and inputs.
-    pub(super) is_combined: bool,
 }
 
 impl Member {
@@ -42,32 +36,37 @@ impl Member {
         connections: &[Connection],
         wires: &mut [Wire],
     ) -> Self {
-        let (mut inputs, mut inputs_from) = (Vec::new(), Vec::new());
-        let (mut reads_counter, mut never_sleeps) = (false, false);
+        let (mut inputs, mut counters_from) = (Vec::new(), Vec::new());
+        let mut never_sleeps = false;
         let mut kinds = Vec::new();
         let (mut registers_to, mut counters_to, mut combinational_to) = (Vec::new(), Vec::new(), Vec::new());
         for (port, on) in part.ports.iter().zip(connections) {
             match (port.direction, *on) {
                 (Direction::Input, Connection::Tied(value)) => inputs.push(value),
                 (Direction::Input, Connection::Net(net)) => {
-                    inputs_from.push((inputs.len(), net));
+                    let reader = MemberInput {
+                        member: at,
+                        input: inputs.len(),
+                    };
+                    // A net is 0 before it is set.
                     inputs.push(0);
-                    reads_counter |= wires[net].counts();
+                    if wires[net].counts() {
+                        counters_from.push((reader.input, net));
+                    }
                     if block.ignores(&port.name) {
-                        wires[net].ignorers.push(at);
+                        wires[net].ignorers.push(reader);
                     } else {
                         never_sleeps |= wires[net].counts();
-                        wires[net].watchers.push(at);
+                        wires[net].watchers.push(reader);
                     }
                 }
                 (Direction::Output, on) => {
                     let kind = block.output_kind(&port.name);
-                    registers_to.push(None);
                     if let Connection::Net(net) = on {
                         match kind {
                             OutputKind::Combinational => combinational_to.push((kinds.len(), net)),
                             OutputKind::Counter => counters_to.push((kinds.len(), net)),
-                            OutputKind::Register => registers_to[kinds.len()] = Some(net),
+                            OutputKind::Register => registers_to.push((kinds.len(), net)),
                         }
                     }
                     kinds.push(kind);
@@ -76,11 +75,8 @@ impl Member {
         }
         Self {
             block,
-            inputs_from,
             inputs,
-            is_read: false,
-            read_clock: 0,
-            reads_counter,
+            counters_from,
             registers_to,
             counters_to,
             combinational_to,
@@ -90,7 +86,6 @@ impl Member {
             kinds,
             never_sleeps,
             clocked_to: 1,
-            is_combined: false,
         }
     }
 
@@ -115,26 +110,34 @@ impl Member {
         self.clocked_to == now
     }
 
-    /// An input has changed in the clock that comes next.
+    /// Passes the clocks before `now` in which it slept.
     #[inline]
-    pub(super) fn has_new_inputs(&mut self) {
-        self.is_read = false;
-    }
-
-    #[inline]
-    fn read(&mut self, wires: &[Wire], clock: u64) {
-        for (input, net) in &self.inputs_from {
-            self.inputs[*input] = wires[*net].at(clock);
+    pub(super) fn catch_up(&mut self, wires: &[Wire], now: u64) {
+        if self.clocked_to < now {
+            self.count(wires, now - 1);
+            self.block.pass(&self.inputs, now - self.clocked_to);
+            self.clocked_to = now;
         }
     }
 
-    /// Reads the inputs of this clock, if they are not those that were read.
+    /// Sets an input from the clock `now` on. The clocks before it passed with the old value.
     #[inline]
-    fn read_now(&mut self, wires: &[Wire], now: u64) {
-        if !self.is_read {
-            self.read(wires, now);
-            self.read_clock = now;
-            self.is_read = !self.reads_counter;
+    pub(super) fn take(&mut self, input: usize, value: u64, wires: &[Wire], now: u64) {
+        self.catch_up(wires, now);
+        self.inputs[input] = value;
+    }
+
+    /// Sets an input that it ignored in the clocks in which it slept.
+    #[inline]
+    pub(super) fn take_unnoticed(&mut self, input: usize, value: u64) {
+        self.inputs[input] = value;
+    }
+
+    /// Sets the inputs that count to their values in this clock.
+    #[inline]
+    fn count(&mut self, wires: &[Wire], clock: u64) {
+        for (input, net) in &self.counters_from {
+            self.inputs[*input] = wires[*net].at(clock);
         }
     }
 
@@ -142,14 +145,11 @@ impl Member {
     #[inline]
     pub(super) fn show(&mut self, changes: &mut Vec<(usize, u64)>) {
         self.block.show(&mut self.outputs);
-        // In most clocks few outputs change, and often none.
-        if self.outputs != self.shown {
-            let outputs = self.outputs.iter().zip(&mut self.shown);
-            for ((value, shown), net) in outputs.zip(&self.registers_to) {
-                if *shown != *value {
-                    *shown = *value;
-                    changes.extend(net.map(|net| (net, *value)));
-                }
+        for (from, net) in &self.registers_to {
+            let (value, shown) = (self.outputs[*from], &mut self.shown[*from]);
+            if *shown != value {
+                *shown = value;
+                changes.push((*net, value));
             }
         }
         let counters = self.counters_to.iter();
@@ -158,25 +158,16 @@ impl Member {
 
     /// Updates the outputs, since the combinational ones depend on the inputs of this clock.
     pub(super) fn combine(&mut self, wires: &[Wire], now: u64) {
-        self.read_now(wires, now);
+        self.count(wires, now);
         self.block.show_with(&self.inputs, &mut self.outputs);
-        self.is_combined = true;
     }
 
     /// Clocks it for this clock, after those that it has slept through.
     pub(super) fn clock(&mut self, wires: &[Wire], now: u64) -> Result<(), StepError> {
-        if self.clocked_to < now {
-            // It slept with the inputs before the change that woke it, which may have been read since.
-            if !self.is_read || self.read_clock == now {
-                self.read(wires, now - 1);
-                self.is_read = false;
-            }
-            self.block.pass(&self.inputs, now - self.clocked_to);
-        }
-        self.read_now(wires, now);
-        self.block.step(&self.inputs, &mut self.outputs)?;
+        self.catch_up(wires, now);
+        self.count(wires, now);
+        self.block.advance(&self.inputs, &mut self.outputs)?;
         self.clocked_to = now + 1;
-        self.is_combined = false;
         Ok(())
     }
 }

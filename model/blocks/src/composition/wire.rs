@@ -1,21 +1,26 @@
-//! A net in a running composition: its value, now and in the clock before.
+//! A net in a running composition.
 
 /// A net. Times count in clocks of the composition.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Wire {
     /// Value in the clock `since` and after it.
     value: u64,
-    /// Value in the clock before `since`.
-    before: u64,
     since: u64,
     /// For a counter, the mask of its width: it goes up by one per clock, starting from `value`.
     counts: Option<u64>,
-    /// Members that depend on it even while they are quiet.
-    pub(super) watchers: Vec<usize>,
-    /// Members that read it only in clocks that are not quiet.
-    pub(super) ignorers: Vec<usize>,
-    /// Whether the composition shows it.
-    pub(super) is_output: bool,
+    /// Inputs of members that depend on it even while they are quiet.
+    pub(super) watchers: Vec<MemberInput>,
+    /// Inputs of members that read it only in clocks that are not quiet.
+    pub(super) ignorers: Vec<MemberInput>,
+    /// Index of the output of the composition that shows it.
+    pub(super) output: Option<usize>,
+}
+
+/// An input of a member, by their indices.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct MemberInput {
+    pub(super) member: usize,
+    pub(super) input: usize,
 }
 
 impl Wire {
@@ -40,27 +45,15 @@ impl Wire {
         }
     }
 
-    /// Its value in a clock, which must not lie before the one before its last change.
+    /// Its value in a clock, which must not lie before its last change.
     #[inline]
     pub(super) fn at(&self, clock: u64) -> u64 {
-        if clock < self.since {
-            self.before
-        } else {
-            self.later(self.value, clock - self.since)
-        }
+        self.later(self.value, clock.wrapping_sub(self.since))
     }
 
-    /// Sets its value from this clock on. Returns whether that is a change.
+    /// Sets its value from this clock on.
     #[inline]
-    pub(super) fn set(&mut self, value: u64, clock: u64) -> bool {
-        if self.at(clock) == value {
-            return false;
-        }
-        if self.since < clock {
-            self.before = self.at(clock - 1);
-            self.since = clock;
-        }
-        self.value = value;
-        true
+    pub(super) fn set(&mut self, value: u64, clock: u64) {
+        (self.value, self.since) = (value, clock);
     }
 }

@@ -77,13 +77,19 @@ impl State {
             } == *other
     }
 
+    /// The filtered levels of A, B and Z.
+    fn levels(&self) -> [bool; 3] {
+        let [a, b, z] = &self.lines;
+        [a.level(), b.level(), z.level()]
+    }
+
     fn disagree(&self, inputs: &Inputs) -> bool {
         self.lines.iter().any(|line| line.disagrees(inputs.differential))
     }
 
     /// Number of clocks with these inputs in which only filters and the time count.
     fn quiet_clocks(&self, inputs: &Inputs) -> u64 {
-        let [level_a, level_b, index_level] = [0, 1, 2].map(|line: usize| self.lines[line].level());
+        let [level_a, level_b, index_level] = self.levels();
         let levels = [level_a, level_b];
         let arms = inputs.index_arm && !self.index_armed;
         let acts = inputs.rst || inputs.tick || inputs.preset || self.presets || inputs.quotient_valid || arms;
@@ -140,7 +146,7 @@ impl PulseCounter {
     /// The outputs in this clock.
     pub fn outputs(&self) -> Outputs {
         let state = &self.state;
-        let [level_a, level_b, level_z] = [0, 1, 2].map(|line: usize| state.lines[line].level());
+        let [level_a, level_b, level_z] = state.levels();
         Outputs {
             count: state.count,
             origin: state.origin,
@@ -193,8 +199,8 @@ impl PulseCounter {
             return;
         }
         let state = &mut self.state;
-        let levels = [state.lines[0].level(), state.lines[1].level()];
-        let index_level = state.lines[2].level();
+        let [level_a, level_b, index_level] = state.levels();
+        let levels = [level_a, level_b];
         let ready = state.primed == PRIMING_CLOCKS;
 
         let event = decode(inputs, levels, state.before);

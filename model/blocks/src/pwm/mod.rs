@@ -215,13 +215,7 @@ impl Pwm {
             left -= 1;
             let skipped = self.state.more_of(&before, inputs).unwrap_or(0).min(left);
             left -= skipped;
-            let state = &mut self.state;
-            // This is at most the distance to a position of 16 bits, and to the end of the timer.
-            state.position = state.position.wrapping_add(skipped as u16);
-            state.command.count(skipped as u16);
-            if state.leg.timer != before.leg.timer {
-                state.leg.timer -= skipped as u16;
-            }
+            self.state.count(skipped as u16);
         }
     }
 }
@@ -235,7 +229,7 @@ impl State {
         }
         let lead = state.period.wrapping_sub(LEAD_CLOCKS);
         let in_phase = state.position == inputs.phase;
-        let waits = state.astray && in_phase && !state.running;
+        let waits = state.waits(inputs);
         let out_of_step = state.synced && !in_phase;
         let ends = state.command.ends() && !waits;
         let (valley, peak) = (ends && state.command.rises, ends && !state.command.rises);
@@ -310,6 +304,11 @@ impl State {
         state.masked = inputs.mask_pins;
         (state.valley, state.peak) = (state.at_valley, state.at_peak);
         (state.at_valley, state.at_peak) = (valley, peak);
+    }
+
+    /// Whether the carrier waits where it is in phase, for its time base.
+    fn waits(&self, inputs: &Inputs) -> bool {
+        self.astray && self.position == inputs.phase && !self.running
     }
 
     /// Takes duty and mode at a boundary. `goes_on`: the outputs were on and stay on.

@@ -1,7 +1,7 @@
 //! The quiet clocks of the PWM, in which only the carrier and a timer count.
 
 use super::ports::{INPUT_PORTS, Inputs};
-use super::{LEAD_CLOCKS, Pwm, State};
+use super::{LEAD_CLOCKS, Pattern, Pwm, State};
 use crate::FOREVER;
 use crate::{Moore, OutputKind, show_each};
 
@@ -11,12 +11,7 @@ impl State {
     pub(super) fn more_of(&self, before: &Self, inputs: &Inputs) -> Option<u64> {
         let state = self;
         let mut counted = *before;
-        counted.position = before.position.wrapping_add(1);
-        counted.command.count(1);
-        let counts = state.leg.timer != before.leg.timer;
-        if counts {
-            counted.leg.timer = before.leg.timer.wrapping_sub(1);
-        }
+        counted.count(1);
         if counted != *state || state.is_busy() || inputs.sync || inputs.rst {
             return None;
         }
@@ -31,10 +26,20 @@ impl State {
             .into_iter()
             .flatten()
             .map(|position| position.wrapping_sub(state.position));
+        let counts = state.leg.timer != before.leg.timer;
         let timer = if counts { state.leg.timer } else { u16::MAX };
         Some(u64::from(
             distances.fold(timer.min(state.command.same_level()), u16::min),
         ))
+    }
+
+    /// Advances by this many clocks in which it only counts: at most the distance to a position of 16 bits, and to the end of the timer.
+    pub(super) fn count(&mut self, clocks: u16) {
+        self.position = self.position.wrapping_add(clocks);
+        self.command.count(clocks);
+        if self.running && self.pattern != Pattern::Off {
+            self.leg.timer = self.leg.timer.saturating_sub(clocks);
+        }
     }
 
     /// Whether it computes a command, or a strobe is high, which falls in the next clock.
@@ -80,7 +85,10 @@ impl Moore for Pwm {
 
     fn pass(&mut self, inputs: &[u64], clocks: u64) {
         if let Ok(raw) = <&[u64; INPUT_PORTS]>::try_from(inputs) {
-            self.hold(&Inputs::from_raw(raw), clocks);
+            let inputs = Inputs::from_raw(raw);
+            if !inputs.rst && !self.state.waits(&inputs) {
+                self.state.count(clocks as u16);
+            }
         }
     }
 }

@@ -365,4 +365,10 @@ impl ClockedBlock for RegisterBank {
         self.clock(inputs);
         Ok(())
     }
+
+    fn advance(&mut self, inputs: &[u64], scratch: &mut [u64]) -> Result<(), StepError> {
+        self.check(inputs, scratch.len())?;
+        self.clock(inputs);
+        Ok(())
+    }
 }
