@@ -4,7 +4,7 @@
 FROM rust:1-bookworm AS build
 WORKDIR /source
 COPY . .
-RUN cargo install --path cli --root /opt/posicast --locked
+RUN cargo install --path cli --profile dist --root /opt/posicast --locked
 
 FROM debian:12-slim
 RUN apt-get update \
