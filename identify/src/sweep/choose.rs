@@ -3,10 +3,9 @@
 //! If a sweep begins or ends otherwise than described, its first or last pulses are missing or too many, and the transfer function has
 //! ripples beside that end, which no mode explains. So descriptions are compared by the residual of the modes there.
 
-use super::follow::Followed;
+use super::follow::{Followed, Known};
 use super::transfer::Band;
 use super::{FoundInSweep, Sweep, SweepError};
-use crate::modal::Pole;
 use crate::parallel::both;
 
 /// Smallest width in Hz of the parts of a band that are compared, and number of points in each.
@@ -22,16 +21,16 @@ const LIKELIER: f64 = 2.5;
 /// The same for an earlier end beside a square wave: the motion after that end is then unknown, and so cannot contradict it.
 const LIKELIER_EARLIER: f64 = 10.0;
 
-/// Returns the likeliest of the earlier result and the results of some descriptions, the more usual ones first. `described` gets the poles of
-/// the likeliest so far, if there is one.
+/// Returns the likeliest of the earlier result and the results of some descriptions, the more usual ones first. `described` gets the likeliest so
+/// far, if there is one.
 pub(super) fn likelier(
     before: Option<Followed>,
     sweeps: &[Sweep],
-    described: impl Fn(&Sweep, Option<&[Pole]>) -> Result<Followed, SweepError> + Sync,
+    described: impl Fn(&Sweep, Option<Known<'_>>) -> Result<Followed, SweepError> + Sync,
 ) -> Option<Followed> {
     let (mut best, mut rest, mut is_first) = (before, sweeps, true);
     while let [sweep, others @ ..] = rest {
-        let known = best.as_ref().map(|best| &best.poles[..]);
+        let known = best.as_ref().map(Followed::known);
         // The first one has both threads for its own fit.
         let beside = others.first().filter(|_| known.is_some());
         let (second, first) = both(

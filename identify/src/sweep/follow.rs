@@ -57,8 +57,25 @@ pub(super) struct Followed {
     pub(super) is_rough: bool,
 }
 
-/// Follows the log whose clock is assumed to run faster than that of the sweep by the factor `clock`. With `known` poles, those of
-/// another description, no others are sought, which takes less than half the time.
+/// What another description of the sweep found in the log.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Known<'a> {
+    poles: &'a [Pole],
+    /// Gain of the square wave beside the sweep.
+    gain: f64,
+}
+
+impl Followed {
+    pub(super) fn known(&self) -> Known<'_> {
+        Known {
+            poles: &self.poles,
+            gain: told_gain(self.found.static_gain),
+        }
+    }
+}
+
+/// Follows the log whose clock is assumed to run faster than that of the sweep by the factor `clock`. With a `known` description, whose
+/// poles are moved, no others are sought and the transfer function is measured once, which takes a quarter of the time.
 ///
 /// # Errors
 /// [`SweepError`] if no modes can be determined.
@@ -67,7 +84,7 @@ pub(super) fn pass(
     sweep: &Sweep,
     clock: f64,
     look: Look,
-    known: Option<&[Pole]>,
+    known: Option<Known<'_>>,
 ) -> Result<Pass, SweepError> {
     let band = Band {
         low_hz: sweep.start_hz * (1.0 + MARGIN),
@@ -130,27 +147,28 @@ pub(super) fn pass(
             unfilled.seen(within(at_s - passes_s), within(at_s + passes_s))
         }
     };
-    let first = moved.as_ref().map(|wave| (wave, 1.0));
-    let rough_placed = Placed::new(&grid, (smooth, pulses), &begun.excitation, first, begun.start_s);
-    let rough = measure(&grid, &mut record, &rough_placed, band, seen(begun.start_s));
-    let (explained_alone, rough) = (rough.explained, rough.transfer);
     // The wave's amplitude is known as the sensor shows it; that of the sweep only from its description.
-    let mut gain = 1.0;
-    if explained_alone < LEAST_EXPLAINED {
-        return Err(SweepError::Unrelated(explained_alone));
+    let mut gain = known.map_or(1.0, |known| known.gain);
+    let first = moved.as_ref().map(|wave| (wave, gain));
+    let rough_placed = Placed::new(&grid, (smooth, pulses), &begun.excitation, first, begun.start_s);
+    let mut measured = measure(&grid, &mut record, &rough_placed, band, seen(begun.start_s));
+    if measured.explained < LEAST_EXPLAINED {
+        return Err(SweepError::Unrelated(measured.explained));
     }
     let covered = covered?;
-    let rough = rough.within(&covered);
+    let mut transfer = std::mem::replace(&mut measured.transfer, Transfer::empty()).within(&covered);
     let crossing = crossing(fine_s);
-    let timed = timed(&outside(&rough.points, &crossing), known).ok_or(SweepError::Empty)?;
+    let timed =
+        timed(&outside(&transfer.points, &crossing), known.map(|known| known.poles)).ok_or(SweepError::Empty)?;
     let late = timed.phase.lateness();
     let bends = late.bend_s.abs() > BEND_S && late.bend_s.abs() > CERTAIN * timed.bend_deviation_s;
     if bends && look != Look::Nowhere {
         return Ok(Pass::Drifts(error(late.bend_s)));
     }
     // The aliased part is known only after the start is known to a small part of a sample.
+    let is_slow = fine_s * SLOW_HZ > 1.0;
     let mut start_s = begun.start_s + late.delay_s;
-    if fine_s * SLOW_HZ > 1.0 {
+    if is_slow {
         let (response, _) = grid.lines(&record);
         let both = moved.as_ref().map(|wave| begun.excitation.beside(wave));
         start_s = sought(
@@ -161,46 +179,43 @@ pub(super) fn pass(
             start_s,
         );
     }
-    let mut poles = timed.poles;
-    let mut turn = 0;
-    let (measured, transfer, fit) = loop {
-        let smooth = placed(&grid, &begun, start_s);
-        let again = moved.as_ref().map(|wave| (wave, gain));
-        let pulses = grid.sampled(&begun.excitation, start_s);
-        let exact = Placed::new(&grid, (smooth, pulses), &begun.excitation, again, start_s);
-        let mut measured = measure(&grid, &mut record, &exact, band, seen(start_s));
-        let mut transfer = std::mem::replace(&mut measured.transfer, Transfer::empty()).within(&covered);
-        let points = &outside(&transfer.points, &crossing);
-        let rest = Phase::Late(Lateness::default());
-        let start = modal::refine(points, &poles, rest, Effort::Rough).ok_or(SweepError::Empty)?;
-        let delay_s = start.phase.lateness().delay_s;
-        let told = 1.0 / start.still.abs().clamp(0.1, 10.0);
-        let is_louder = sweep.sweeping == Sweeping::FromLog && wave.is_some() && (gain / told).ln().abs() > SAME_GAIN;
-        let known_to = if fine_s * SLOW_HZ > 1.0 {
-            START_SAMPLES
-        } else {
-            START_FAST
-        };
-        let is_late = delay_s.abs() > fine_s * known_to;
-        if (is_late || is_louder) && turn < START_TURNS {
+    let mut near = timed;
+    if known.is_some() && !is_slow {
+        start_s = begun.start_s;
+    } else {
+        for turn in 0.. {
+            let smooth = placed(&grid, &begun, start_s);
+            let again = moved.as_ref().map(|wave| (wave, gain));
+            let pulses = grid.sampled(&begun.excitation, start_s);
+            let exact = Placed::new(&grid, (smooth, pulses), &begun.excitation, again, start_s);
+            measured = measure(&grid, &mut record, &exact, band, seen(start_s));
+            transfer = std::mem::replace(&mut measured.transfer, Transfer::empty()).within(&covered);
+            let points = &outside(&transfer.points, &crossing);
+            let rest = Phase::Late(Lateness::default());
+            near = modal::refine(points, &near.poles, rest, Effort::Rough).ok_or(SweepError::Empty)?;
+            let delay_s = near.phase.lateness().delay_s;
+            let told = told_gain(near.still.abs());
+            let is_louder =
+                sweep.sweeping == Sweeping::FromLog && wave.is_some() && (gain / told).ln().abs() > SAME_GAIN;
+            let known_to = if is_slow { START_SAMPLES } else { START_FAST };
+            let is_late = delay_s.abs() > fine_s * known_to;
+            if !(is_late || is_louder) || turn == START_TURNS {
+                break;
+            }
             start_s += delay_s;
             gain = if is_louder { told } else { gain };
-            poles = start.poles;
-            turn += 1;
-            continue;
         }
-        let grown = match known {
-            Some(_) => start,
-            None => modal::pruned(points, modal::grown(points, start)),
-        };
-        let all = |points: &[ResponsePoint], effort| modal::refine(points, &grown.poles, grown.phase, effort);
-        if points.len() < transfer.points.len() {
-            let fit = all(&transfer.points, Effort::Rough).ok_or(SweepError::Empty)?;
-            weighed(&mut transfer.points, &crossing, &fit);
+        if known.is_none() {
+            let points = &outside(&transfer.points, &crossing);
+            near = modal::pruned(points, modal::grown(points, near));
         }
-        let fit = all(&transfer.points, Effort::Full).ok_or(SweepError::Empty)?;
-        break (measured, transfer, fit);
-    };
+    }
+    let all = |points: &[ResponsePoint], effort| modal::refine(points, &near.poles, near.phase, effort);
+    if outside(&transfer.points, &crossing).len() < transfer.points.len() {
+        let fit = all(&transfer.points, Effort::Rough).ok_or(SweepError::Empty)?;
+        weighed(&mut transfer.points, &crossing, &fit);
+    }
+    let fit = all(&transfer.points, Effort::Full).ok_or(SweepError::Empty)?;
     let told = told(&transfer, &fit);
     if told < LEAST_TOLD {
         return Err(SweepError::Unlike(told));
@@ -244,6 +259,11 @@ const START_TURNS: usize = 3;
 const CUT_S: f64 = 0.3;
 /// Time in seconds before the end of a sweep with a square wave from which on the motion is unknown, because the firmware brakes.
 const STOP_S: f64 = 0.05;
+
+/// Gain of a square wave beside a sweep with this static gain.
+fn told_gain(static_gain: f64) -> f64 {
+    1.0 / static_gain.clamp(0.1, 10.0)
+}
 
 /// The direction with the most power in the band.
 struct Strongest {

@@ -23,10 +23,9 @@ pub use excitation::{QuarterOrder, Rise, SquareWave, Sweep, Sweeping, SweptAccel
 pub use transfer::{Band, Transfer};
 
 use crate::found::FoundMode;
-use crate::modal::Pole;
 use crate::signal::AccelerationLog;
 use choose::likelier;
-use follow::{Followed, Look, Pass};
+use follow::{Followed, Known, Look, Pass};
 use nalgebra::Complex;
 use posicast_shaper::mode::Mode;
 use reduce::Reduced;
@@ -139,8 +138,8 @@ fn long_enough(log: &AccelerationLog) -> Result<(), SweepError> {
     }
 }
 
-/// Follows a log with a description, whose clock is corrected until it fits. `known` are poles of another description: see [`follow::pass`].
-fn followed(log: &Reduced<'_>, sweep: &Sweep, known: Option<&[Pole]>) -> Result<Followed, SweepError> {
+/// Follows a log with a description, whose clock is corrected until it fits. `known` is of another description: see [`follow::pass`].
+fn followed(log: &Reduced<'_>, sweep: &Sweep, known: Option<Known<'_>>) -> Result<Followed, SweepError> {
     let mut clock = 1.0;
     for pass in 0..PASSES {
         let look = if pass == 0 { Look::Everywhere } else { Look::Near };
@@ -169,7 +168,7 @@ pub fn identify_any(log: &AccelerationLog) -> Result<FoundInSweep, SweepError> {
     long_enough(log)?;
     let usual = Sweep::default();
     let reduced = Reduced::new(log, usual.end_hz);
-    let described = |sweep: &Sweep, known: Option<&[Pole]>| {
+    let described = |sweep: &Sweep, known: Option<Known<'_>>| {
         check(sweep, log.sample_s)?;
         followed(&reduced, sweep, known)
     };

@@ -69,14 +69,16 @@ impl Filter {
         windows.map(|window| product(window, &self.taps)).collect()
     }
 
-    /// Response of the filter to an edge `steps` samples ago that acts from the next sample on: the sum of all taps up to `steps` samples
-    /// after the middle.
-    fn response_to_sampled_edge(&self, steps: f64) -> f64 {
-        let taps = (steps.floor() + self.half as f64 + 1.0).max(0.0) as usize;
+    /// Response of the filter, `now` samples after the first, to an edge that acts from the sample `at` on: the sum of all taps up to
+    /// `now − at` samples after the middle.
+    #[inline]
+    fn response_to_sampled_edge(&self, now: i64, at: i64) -> f64 {
+        let taps = (now - at + self.half as i64 + 1).max(0) as usize;
         self.sums.get(taps).copied().unwrap_or(1.0)
     }
 
-    /// The same for an edge that acts at once on a sensor which averages over a sample.
+    /// The same for an edge `steps` samples ago that acts at once on a sensor which averages over a sample.
+    #[inline]
     fn response_to_edge(&self, steps: f64) -> f64 {
         let at = steps + self.half as f64 + 0.5;
         let taps = at.max(0.0) as usize;
@@ -95,28 +97,45 @@ impl Filter {
         length: usize,
         averages: bool,
     ) -> Vec<f64> {
-        let edges: Vec<(f64, f64)> = excitation
-            .pieces()
-            .map(|(begin_s, acceleration)| ((begin_s - first_s) / fine_s, acceleration))
-            .collect();
+        struct Edge {
+            /// In samples after the first.
+            at: f64,
+            /// The first sample that is not before it.
+            sample: i64,
+            /// The excitation after it, and by how much it changes.
+            level: f64,
+            step: f64,
+        }
+        let mut before = 0.0;
+        let edge = |(begin_s, level): (f64, f64)| {
+            let at = (begin_s - first_s) / fine_s;
+            let step = level - std::mem::replace(&mut before, level);
+            let sample = at.ceil() as i64;
+            Edge {
+                at,
+                sample,
+                level,
+                step,
+            }
+        };
+        let edges: Vec<Edge> = excitation.pieces().map(edge).collect();
         let reach = self.half as f64 + 1.0;
         let (mut settled, mut before) = (0, 0.0);
         let kept = (0..length).map(|n| {
-            let now = (n * self.factor) as f64;
-            while let Some((_, acceleration)) = edges.get(settled).filter(|(at, _)| *at < now - reach) {
-                (settled, before) = (settled + 1, *acceleration);
+            let sample = n * self.factor;
+            let now = sample as f64;
+            while let Some(edge) = edges.get(settled).filter(|edge| edge.at < now - reach) {
+                (settled, before) = (settled + 1, edge.level);
             }
-            let (mut value, mut level) = (before, before);
-            for (at, acceleration) in edges[settled..].iter().take_while(|(at, _)| *at <= now + reach) {
+            let near = edges[settled..].iter().take_while(|edge| edge.at <= now + reach);
+            near.fold(before, |value, edge| {
                 let part = if averages {
-                    self.response_to_edge(now - at)
+                    self.response_to_edge(now - edge.at)
                 } else {
-                    self.response_to_sampled_edge(now - at)
+                    self.response_to_sampled_edge(sample as i64, edge.sample)
                 };
-                value += (acceleration - level) * part;
-                level = *acceleration;
-            }
-            value
+                value + edge.step * part
+            })
         });
         kept.collect()
     }
