@@ -7,11 +7,11 @@ use crate::support::wrong;
 
 use plain::Plain;
 use posicast_blocks::component::Component;
-use posicast_blocks::composition::{Composed, Composition};
+use posicast_blocks::composition::{Composed, Composition, Part};
 use posicast_blocks::divider::DividerConfig;
 use posicast_blocks::pwm::BridgeMode;
 use posicast_blocks::sliding_mode::Law;
-use posicast_blocks::{ClockedBlock, Direction, Moore, OutputKind};
+use posicast_blocks::{ClockedBlock, Direction, FOREVER, Moore, OutputKind, Port, StepError};
 use proptest::prelude::*;
 use random_inputs::{Hints, Random, RandomInputs, STAGE, TICK_CLOCKS};
 use stage::{axis, pwm_config, settings, shaper_config, stage};
@@ -164,6 +164,100 @@ fn a_part_that_says_something_wrong_is_found() {
             compare(&mut Composed::new(composition, blocks), &mut plain, STAGE, seed).is_err()
         });
         assert!(found, "part {part}: {what}");
+    }
+}
+
+/// Keeps its data in every clock, and shows after a strobe what it kept in the clock before.
+#[derive(Default)]
+struct Keeper {
+    ports: Vec<Port>,
+    kept: u64,
+    shown: u64,
+}
+
+impl Keeper {
+    fn new() -> Self {
+        let port = |name: &str, direction, width| Port {
+            name: name.to_owned(),
+            direction,
+            width,
+            signed: false,
+        };
+        Self {
+            ports: vec![
+                port("data", Direction::Input, 8),
+                port("strobe", Direction::Input, 1),
+                port("shown", Direction::Output, 8),
+            ],
+            ..Self::default()
+        }
+    }
+}
+
+impl ClockedBlock for Keeper {
+    fn ports(&self) -> &[Port] {
+        &self.ports
+    }
+
+    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
+        self.show(outputs);
+        if inputs[1] != 0 {
+            self.shown = self.kept;
+        }
+        self.kept = inputs[0];
+        Ok(())
+    }
+}
+
+impl Moore for Keeper {
+    fn show(&self, outputs: &mut [u64]) {
+        outputs[0] = self.shown;
+    }
+
+    fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
+        if inputs[1] != 0 { 0 } else { FOREVER }
+    }
+
+    fn pass(&mut self, inputs: &[u64], _clocks: u64) {
+        self.kept = inputs[0];
+    }
+
+    fn ignores(&self, input: &str) -> bool {
+        input == "data"
+    }
+}
+
+#[test]
+fn a_sleeping_block_passes_with_the_value_before_an_ignored_change() {
+    let keeper = || -> Whole {
+        let part = Part::new("keeper", Keeper::new().ports());
+        let composition = Composition::new(vec![part], &["data", "strobe"], &["shown"]).unwrap();
+        (composition, vec![Box::new(Keeper::new())])
+    };
+    let nested = |inner: Whole| -> Whole { (inner.0.clone(), vec![Box::new(Composed::new(inner.0, inner.1))]) };
+    for (depth, whole) in [keeper(), nested(keeper())].into_iter().enumerate() {
+        let (mut fast, mut plain) = (Composed::new(whole.0, whole.1), Plain::new(keeper()));
+        let (mut shown, mut expected) = ([0], [0]);
+        // Data changes alone, with the strobe, and just before it; the block sleeps in between.
+        for (data, strobe, clocks) in [
+            (5, 0, 7),
+            (6, 1, 1),
+            (7, 0, 3),
+            (8, 0, 1),
+            (9, 1, 2),
+            (9, 0, 4),
+            (1, 1, 1),
+            (1, 0, 2),
+        ] {
+            let mut left = clocks;
+            while left > 0 {
+                left -= fast.hold(&[data, strobe], left, &mut shown).unwrap();
+            }
+            (0..clocks).for_each(|_| plain.step(&[data, strobe], &mut expected).unwrap());
+            fast.show_with(&[data, 0], &mut shown);
+            plain.show(&mut expected);
+            assert_eq!(shown, expected, "depth {depth}, data {data}, strobe {strobe}");
+        }
     }
 }
 

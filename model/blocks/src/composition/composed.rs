@@ -48,7 +48,6 @@ pub struct Composed {
 }
 
 /// Members to be clocked, in the order in which that became known.
-#[derive(Default)]
 struct Due {
     list: Vec<usize>,
     /// For each member, whether it is in the list.

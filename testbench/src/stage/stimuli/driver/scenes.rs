@@ -13,8 +13,8 @@ use super::{Do, Driver, Moves, Plan};
 /// A scene: it plans what happens to its leader.
 type Scene = fn(&mut Driver, usize);
 
-/// The scenes of every stage. Those that drive the most wires between the blocks in the fewest ticks come first; the first one loads a table, moves,
-/// trips and recovers, and a host at a line does not come much further.
+/// The scenes of every stage. Those that drive the most wires between the blocks in the fewest ticks come first; the first one loads a
+/// table, moves, trips and recovers, and a host at a line does not come much further.
 const SCENES: [Scene; 25] = [
     Driver::command_beyond_a_soft_limit,
     Driver::follows_badly,
