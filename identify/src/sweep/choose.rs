@@ -21,8 +21,8 @@ const LIKELIER: f64 = 2.5;
 /// The same for an earlier end beside a square wave: the motion after that end is then unknown, and so cannot contradict it.
 const LIKELIER_EARLIER: f64 = 10.0;
 
-/// Returns the likeliest of the earlier result and the results of some descriptions, the more usual ones first. `described` gets the likeliest so
-/// far, if there is one.
+/// Returns the likeliest of the earlier result and the results of some descriptions, the more usual ones first. `described` gets the
+/// likeliest so far, if there is one.
 pub(super) fn likelier(
     before: Option<Followed>,
     sweeps: &[Sweep],

@@ -75,7 +75,7 @@ impl Followed {
 }
 
 /// Follows the log whose clock is assumed to run faster than that of the sweep by the factor `clock`. With a `known` description, whose
-/// poles are moved, no others are sought and the transfer function is measured once, which takes a quarter of the time.
+/// poles are moved, no others are sought and the transfer function is measured once.
 ///
 /// # Errors
 /// [`SweepError`] if no modes can be determined.
@@ -165,24 +165,22 @@ pub(super) fn pass(
     if bends && look != Look::Nowhere {
         return Ok(Pass::Drifts(error(late.bend_s)));
     }
-    // The aliased part is known only after the start is known to a small part of a sample.
     let is_slow = fine_s * SLOW_HZ > 1.0;
-    let mut start_s = begun.start_s + late.delay_s;
-    if is_slow {
-        let (response, _) = grid.lines(&record);
-        let both = moved.as_ref().map(|wave| begun.excitation.beside(wave));
-        start_s = sought(
-            &grid,
-            &response,
-            &rough_placed.trusted(),
-            both.as_ref().unwrap_or(&begun.excitation),
-            start_s,
-        );
-    }
-    let mut near = timed;
-    if known.is_some() && !is_slow {
-        start_s = begun.start_s;
-    } else {
+    let (mut start_s, mut near) = (begun.start_s, timed);
+    if known.is_none() || is_slow {
+        start_s += late.delay_s;
+        // The aliased part is known only after the start is known to a small part of a sample.
+        if is_slow {
+            let (response, _) = grid.lines(&record);
+            let both = moved.as_ref().map(|wave| begun.excitation.beside(wave));
+            start_s = sought(
+                &grid,
+                &response,
+                &rough_placed.trusted(),
+                both.as_ref().unwrap_or(&begun.excitation),
+                start_s,
+            );
+        }
         for turn in 0.. {
             let smooth = placed(&grid, &begun, start_s);
             let again = moved.as_ref().map(|wave| (wave, gain));
@@ -205,10 +203,10 @@ pub(super) fn pass(
             start_s += delay_s;
             gain = if is_louder { told } else { gain };
         }
-        if known.is_none() {
-            let points = &outside(&transfer.points, &crossing);
-            near = modal::pruned(points, modal::grown(points, near));
-        }
+    }
+    if known.is_none() {
+        let points = &outside(&transfer.points, &crossing);
+        near = modal::pruned(points, modal::grown(points, near));
     }
     let all = |points: &[ResponsePoint], effort| modal::refine(points, &near.poles, near.phase, effort);
     if outside(&transfer.points, &crossing).len() < transfer.points.len() {

@@ -49,25 +49,18 @@ const DPROVE_LIMIT: Duration = Duration::from_secs(10);
 /// Processor time of ABC's `reach`, which has the rest of its engine's time beside it.
 const REACH_LIMIT: Duration = Duration::from_secs(20);
 
-/// What an engine says of a miter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Answer {
-    Proven,
-    Different,
-    Open,
-}
-
-impl Answer {
-    fn of(said: Option<&str>) -> Self {
-        let Some(said) = said else {
-            return Self::Open;
-        };
-        let proofs = ["Property proved", "proved unreachable", "Networks are equivalent"];
-        if proofs.iter().any(|proof| said.contains(proof)) {
-            return Self::Proven;
-        }
-        counterexample_clock(said).map_or(Self::Open, |_| Self::Different)
+/// What an engine says of a miter, if it finished.
+fn told(said: Option<&str>) -> EquivalenceVerdict {
+    let Some(said) = said else {
+        return EquivalenceVerdict::Unknown;
+    };
+    let proofs = ["Property proved", "proved unreachable", "Networks are equivalent"];
+    if proofs.iter().any(|proof| said.contains(proof)) {
+        return EquivalenceVerdict::Equivalent;
     }
+    counterexample_clock(said).map_or(EquivalenceVerdict::Unknown, |clock| EquivalenceVerdict::Different {
+        clock,
+    })
 }
 
 /// A mutant beside its block. The quick engines come first, so that a search for a broken property can come before the slow ones.
@@ -79,7 +72,7 @@ pub(super) struct Comparison<'a> {
     mutant: &'a Mutant,
     limit: Duration,
     /// What quick engines found without memories.
-    found: Vec<(Without, Answer)>,
+    found: Vec<(Without, EquivalenceVerdict)>,
 }
 
 impl<'a> Comparison<'a> {
@@ -98,7 +91,7 @@ impl<'a> Comparison<'a> {
         let products = self.netlist.multiplies().then_some(Without::Memories);
         for without in [Without::MemoriesAndProducts].into_iter().chain(products) {
             let answer = self.quickly(without)?;
-            if answer == Answer::Proven {
+            if answer == EquivalenceVerdict::Equivalent {
                 return Ok(true);
             }
             self.found.push((without, answer));
@@ -110,33 +103,29 @@ impl<'a> Comparison<'a> {
     pub(super) fn verdict(mut self) -> Result<EquivalenceVerdict, Error> {
         let Self { netlist, limit, .. } = self;
         for (without, answer) in &self.found {
-            if *answer == Answer::Open && self.slowly(*without)? == Answer::Proven {
+            let is_open = *answer == EquivalenceVerdict::Unknown;
+            if is_open && self.slowly(*without)? == EquivalenceVerdict::Equivalent {
                 return Ok(EquivalenceVerdict::Equivalent);
             }
         }
         if (1..=MOST_MEMORY_BITS).contains(&netlist.memory_bits()) {
             let answer = match self.quickly(Without::Nothing)? {
-                Answer::Open => self.slowly(Without::Nothing)?,
+                EquivalenceVerdict::Unknown => self.slowly(Without::Nothing)?,
                 answer => answer,
             };
-            if answer == Answer::Proven {
-                return Ok(EquivalenceVerdict::Equivalent);
+            if answer == EquivalenceVerdict::Equivalent {
+                return Ok(answer);
             }
             self.found.push((Without::Nothing, answer));
         }
         // A difference counts only where the least is left out.
         let least = self.found.last().map_or("", |(without, _)| without.name());
         let search = format!("read_aiger {least}_merged.aig; bmc3 -T {}", patience(limit));
-        let clock = abc(netlist, &search, limit)?.and_then(|said| counterexample_clock(&said));
-        Ok(
-            clock.map_or(EquivalenceVerdict::Unknown, |clock| EquivalenceVerdict::Different {
-                clock,
-            }),
-        )
+        Ok(told(abc(netlist, &search, limit)?.as_deref()))
     }
 
     /// Makes the miter, merges what is equal, and asks the engines that take seconds.
-    fn quickly(&self, without: Without) -> Result<Answer, Error> {
+    fn quickly(&self, without: Without) -> Result<EquivalenceVerdict, Error> {
         let Self { netlist, limit, .. } = *self;
         let name = without.name();
         netlist.yosys("miter", &miter(netlist.top(), self.mutant, without))?;
@@ -149,23 +138,23 @@ impl<'a> Comparison<'a> {
             "read_aiger {name}.aig; fold; strash; orpos; scorr; scorr -F 4; write_aiger {name}_merged.aig; reach -T {} -F 100000 -B {BDD_NODES}",
             patience(REACH_LIMIT)
         );
-        let answer = Answer::of(abc(netlist, &merge, limit.saturating_mul(2))?.as_deref());
-        if answer != Answer::Open {
+        let answer = told(abc(netlist, &merge, limit.saturating_mul(2))?.as_deref());
+        if answer != EquivalenceVerdict::Unknown {
             return Ok(answer);
         }
         // Induction, retiming and reachability in turn succeed quickly or not at all.
         let dprove = format!("read_aiger {name}_merged.aig; dprove -T {}", patience(DPROVE_LIMIT));
-        Ok(Answer::of(abc(netlist, &dprove, DPROVE_LIMIT)?.as_deref()))
+        Ok(told(abc(netlist, &dprove, DPROVE_LIMIT)?.as_deref()))
     }
 
     /// Asks the engine that takes as long as it may, after [`quickly`](Self::quickly).
-    fn slowly(&self, without: Without) -> Result<Answer, Error> {
+    fn slowly(&self, without: Without) -> Result<EquivalenceVerdict, Error> {
         let pdr = format!(
             "read_aiger {}_merged.aig; pdr -m -T {}",
             without.name(),
             patience(self.limit)
         );
-        Ok(Answer::of(abc(self.netlist, &pdr, self.limit)?.as_deref()))
+        Ok(told(abc(self.netlist, &pdr, self.limit)?.as_deref()))
     }
 }
 

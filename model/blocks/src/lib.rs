@@ -131,7 +131,8 @@ pub trait ClockedBlock {
     /// [`StepError`] where a simulator fails; a model never fails.
     fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError>;
 
-    /// Does the same without outputs, for callers that show them otherwise. `scratch` has a value per output port, and means nothing afterwards.
+    /// Does the same without outputs, for callers that show them otherwise. `scratch` has a value per output port, and means nothing
+    /// afterwards.
     ///
     /// # Errors
     /// Those of [`step`](Self::step).

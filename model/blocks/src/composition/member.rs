@@ -112,7 +112,7 @@ impl Member {
 
     /// Passes the clocks before `now` in which it slept.
     #[inline]
-    pub(super) fn catch_up(&mut self, wires: &[Wire], now: u64) {
+    fn catch_up(&mut self, wires: &[Wire], now: u64) {
         if self.clocked_to < now {
             self.count(wires, now - 1);
             self.block.pass(&self.inputs, now - self.clocked_to);
