@@ -1,4 +1,4 @@
-//! Newton's method for a small square system, with the Jacobian from central differences.
+//! Newton's method for a small square system, with the Jacobian of the caller or from central differences.
 //!
 //! The unknowns are scaled to order one and number ten or so at most, so the Jacobian is cheap and differences are
 //! accurate enough: the steps still end at rounding level, because the equations themselves are exact.
@@ -11,27 +11,27 @@ const DIFFERENCE: f64 = 6e-6;
 /// or five rounds.
 const ROUNDS: usize = 30;
 
-/// Solves `equations(x) = 0` from a start near the solution. `None` if it does not get every equation below
-/// `accuracy`.
+/// Solves `equations(x) = 0` from a start near the solution, with the Jacobian from central differences. `None` if it
+/// does not get every equation below `accuracy`.
 pub(super) fn solve(
     equations: impl Fn(&DVector<f64>) -> DVector<f64>,
     start: DVector<f64>,
     accuracy: f64,
 ) -> Option<DVector<f64>> {
-    let unknowns = start.len();
+    solve_with(&equations, |x| differences(&equations, x), start, accuracy)
+}
+
+/// As [`solve`], with the derivatives of the equations: a row per equation, a column per unknown.
+pub(super) fn solve_with(
+    equations: impl Fn(&DVector<f64>) -> DVector<f64>,
+    jacobian: impl Fn(&DVector<f64>) -> DMatrix<f64>,
+    start: DVector<f64>,
+    accuracy: f64,
+) -> Option<DVector<f64>> {
     let mut best = start;
     let mut values = equations(&best);
     for _ in 0..ROUNDS {
-        let mut jacobian = DMatrix::zeros(values.len(), unknowns);
-        for column in 0..unknowns {
-            let mut ahead = best.clone();
-            let mut behind = best.clone();
-            ahead[column] += DIFFERENCE;
-            behind[column] -= DIFFERENCE;
-            let slope = (equations(&ahead) - equations(&behind)) / (2.0 * DIFFERENCE);
-            jacobian.set_column(column, &slope);
-        }
-        let next = &best - jacobian.lu().solve(&values)?;
+        let next = &best - jacobian(&best).lu().solve(&values)?;
         let next_values = equations(&next);
         let (error, next_error) = (largest(&values), largest(&next_values));
         // At rounding level the error no longer falls: the better of the last two is the solution.
@@ -41,6 +41,17 @@ pub(super) fn solve(
         (best, values) = (next, next_values);
     }
     (largest(&values) < accuracy).then_some(best)
+}
+
+/// The Jacobian from central differences.
+fn differences(equations: impl Fn(&DVector<f64>) -> DVector<f64>, x: &DVector<f64>) -> DMatrix<f64> {
+    let slopes = (0..x.len()).map(|column| {
+        let (mut ahead, mut behind) = (x.clone(), x.clone());
+        ahead[column] += DIFFERENCE;
+        behind[column] -= DIFFERENCE;
+        (equations(&ahead) - equations(&behind)) / (2.0 * DIFFERENCE)
+    });
+    DMatrix::from_columns(&slopes.collect::<Vec<_>>())
 }
 
 /// Largest magnitude of the values; NaN if one of them is NaN.
