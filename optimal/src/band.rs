@@ -34,6 +34,12 @@ impl Point {
         Complex64::from_polar((-omega * self.damping).exp(), -imaginary)
     }
 
+    /// Whether two points of one band are the same but for rounding.
+    fn is_at(&self, other: &Self) -> bool {
+        let is_near = |a: f64, b: f64, unit: f64| (a - b).abs() <= ROUNDING * unit;
+        is_near(self.frequency_hz, other.frequency_hz, other.frequency_hz) && is_near(self.damping, other.damping, 1.0)
+    }
+
     /// Returns the ratio of the residual of these taps to the tolerance.
     pub(crate) fn ratio(&self, taps: &[(u32, f64)], sample_hz: f64) -> f64 {
         residual_sum(taps, self.z(sample_hz)).norm() / self.tolerance
@@ -68,6 +74,8 @@ struct Edge {
 const LOOKS_PER_TURN: f64 = 16.0;
 /// Smallest number of evaluations along an edge.
 const LOOKS_LEAST: f64 = 24.0;
+/// Distance below which two points are one: that of the frequencies relative to them, that of the damping ratios.
+const ROUNDING: f64 = 1e-9;
 /// Rounds of the golden section that narrows a peak.
 const ROUNDS: usize = 34;
 
@@ -140,7 +148,8 @@ impl Band {
         points
     }
 
-    /// Returns the peaks of the ratio of residual to tolerance along the edges, including the ends, highest first.
+    /// Returns the peaks of the ratio of residual to tolerance along the edges, including the ends, highest first; each
+    /// point once.
     pub(crate) fn peaks(&self, band: usize, taps: &[(u32, f64)], sample_hz: f64) -> Vec<(f64, Point)> {
         let samples = f64::from(taps.last().map_or(0, |tap| tap.0));
         let mut peaks = Vec::new();
@@ -169,7 +178,14 @@ impl Band {
             }
         }
         peaks.sort_by(|a, b| b.0.total_cmp(&a.0));
-        peaks
+        // Two edges share a corner. A point that is twice in a cone program is work, and makes it ill-conditioned.
+        let mut apart: Vec<(f64, Point)> = Vec::new();
+        for peak in peaks {
+            if !apart.iter().any(|(_, other)| other.is_at(&peak.1)) {
+                apart.push(peak);
+            }
+        }
+        apart
     }
 }
 
@@ -193,5 +209,27 @@ fn narrow(value: impl Fn(f64) -> f64, mut from: f64, mut to: f64) -> (f64, f64) 
         (low, at_low)
     } else {
         (high, at_high)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_corner_is_one_peak_of_its_two_edges() {
+        let band = Band {
+            frequency_hz: [22.0, 26.0],
+            damping: [0.01, 0.04],
+            tolerance: 0.05,
+        };
+        // The residual of a shaper for 24 Hz falls along each edge towards its middle.
+        let peaks = band.peaks(0, &[(0, 0.5), (104, 0.5)], 5000.0);
+        let mut corners: Vec<_> = peaks
+            .iter()
+            .map(|(_, point)| [point.frequency_hz, point.damping])
+            .collect();
+        corners.sort_by(|a, b| a.partial_cmp(b).unwrap());
+        assert_eq!(corners, [[22.0, 0.01], [22.0, 0.04], [26.0, 0.01], [26.0, 0.04]]);
     }
 }
