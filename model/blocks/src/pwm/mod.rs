@@ -169,29 +169,7 @@ impl Pwm {
     /// The outputs in this clock. The raw inputs act on the pins in the same clock.
     #[inline]
     pub fn outputs(&self, inputs: &Inputs) -> Outputs {
-        let state = &self.state;
-        let on = state.trip.armed(inputs) && !state.masked;
-        let off = self.config.active_low();
-        Outputs {
-            a_high: (state.gates.a_high && on) != off.a_high,
-            a_low: (state.gates.a_low && on) != off.a_low,
-            b_high: (state.gates.b_high && on) != off.b_high,
-            b_low: (state.gates.b_low && on) != off.b_low,
-            running: state.running,
-            tripped: state.trip.tripped(),
-            trip_causes: state.trip.causes(),
-            negative: state.negative,
-            valley: state.valley,
-            peak: state.peak,
-            trigger: state.trigger,
-            saturated: state.saturated,
-            refused: state.refused,
-            below_floor: state.below_floor,
-            unaligned: state.unaligned,
-            dead_time_used: state.dead_time,
-            minimum_pulse_used: state.minimum_pulse,
-            gates: state.gates,
-        }
+        self.state.outputs(self.config.active_low(), inputs)
     }
 
     /// Simulates one clock: returns the outputs before the rising edge, then clocks.
@@ -221,6 +199,31 @@ impl Pwm {
 }
 
 impl State {
+    #[inline]
+    fn outputs(&self, off: ActiveLow, inputs: &Inputs) -> Outputs {
+        let on = self.trip.armed(inputs) && !self.masked;
+        Outputs {
+            a_high: (self.gates.a_high && on) != off.a_high,
+            a_low: (self.gates.a_low && on) != off.a_low,
+            b_high: (self.gates.b_high && on) != off.b_high,
+            b_low: (self.gates.b_low && on) != off.b_low,
+            running: self.running,
+            tripped: self.trip.tripped(),
+            trip_causes: self.trip.causes(),
+            negative: self.negative,
+            valley: self.valley,
+            peak: self.peak,
+            trigger: self.trigger,
+            saturated: self.saturated,
+            refused: self.refused,
+            below_floor: self.below_floor,
+            unaligned: self.unaligned,
+            dead_time_used: self.dead_time,
+            minimum_pulse_used: self.minimum_pulse,
+            gates: self.gates,
+        }
+    }
+
     fn clock(&mut self, config: &PwmConfig, inputs: &Inputs) {
         let state = self;
         if inputs.rst {

@@ -1,9 +1,13 @@
-//! The quiet clocks of the PWM, in which only the carrier and a timer count.
+//! The quiet clocks of the PWM: those in which only the carrier and a timer count, and those of a computation that no
+//! output shows.
 
 use super::ports::{INPUT_PORTS, Inputs};
-use super::{LEAD_CLOCKS, Pattern, Pwm, State};
+use super::{LEAD_CLOCKS, Pattern, Pwm, PwmConfig, State};
 use crate::FOREVER;
 use crate::{Moore, OutputKind, show_each};
+
+/// Largest number of clocks that are simulated to see whether an output changes: those of a computation.
+const MOST_UNSEEN: u64 = 32;
 
 impl State {
     /// Number of further clocks like the last one, which led from `before` to the present state; `None` if it did more
@@ -42,6 +46,38 @@ impl State {
         }
     }
 
+    /// Number of clocks from a busy one, after each of which all outputs are as now; [`FOREVER`] if the carrier waits.
+    ///
+    /// It simulates them, since a leg may switch meanwhile. That takes a fraction of what a composition needs to clock a
+    /// block.
+    fn unseen(&self, config: &PwmConfig, inputs: &Inputs) -> u64 {
+        // A raw fault turns the pins off, in all of these clocks alike.
+        let armed = Inputs {
+            fault_n: true,
+            pll_locked: true,
+            ..*inputs
+        };
+        let shown = |state: &Self| state.outputs(config.active_low(), &armed);
+        let (before, mut state) = (shown(self), *self);
+        for clocks in 0..MOST_UNSEEN {
+            let next = state.after(config, inputs);
+            if next == state {
+                return FOREVER;
+            }
+            if !state.is_busy() || shown(&next) != before {
+                return clocks;
+            }
+            state = next;
+        }
+        MOST_UNSEEN
+    }
+
+    /// The state after one clock.
+    fn after(mut self, config: &PwmConfig, inputs: &Inputs) -> Self {
+        self.clock(config, inputs);
+        self
+    }
+
     /// Whether it computes a command, or a strobe is high, which falls in the next clock.
     fn is_busy(&self) -> bool {
         let strobes = self.at_valley || self.at_peak || self.valley || self.peak || self.trigger;
@@ -67,16 +103,16 @@ impl Moore for Pwm {
         show_each(outputs, self.outputs(&inputs).to_raw());
     }
 
-    /// Tries one clock: if it only counts, it and all like it are quiet; if it changes nothing, because the carrier waits, all are.
+    /// Tries one clock: if it only counts, it and all like it are quiet; if it changes nothing, because the carrier waits,
+    /// all are.
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
-        if self.state.is_busy() {
-            return 0;
-        }
         let Ok(inputs) = <&[u64; INPUT_PORTS]>::try_from(inputs).map(Inputs::from_raw) else {
             return 0;
         };
-        let mut next = self.state;
-        next.clock(&self.config, &inputs);
+        if self.state.is_busy() {
+            return self.state.unseen(&self.config, &inputs);
+        }
+        let next = self.state.after(&self.config, &inputs);
         if next == self.state {
             return FOREVER;
         }
@@ -86,7 +122,15 @@ impl Moore for Pwm {
     fn pass(&mut self, inputs: &[u64], clocks: u64) {
         if let Ok(raw) = <&[u64; INPUT_PORTS]>::try_from(inputs) {
             let inputs = Inputs::from_raw(raw);
-            if !inputs.rst && !self.state.waits(&inputs) {
+            if self.state.is_busy() {
+                for _ in 0..clocks {
+                    let before = self.state;
+                    self.state.clock(&self.config, &inputs);
+                    if self.state == before {
+                        break;
+                    }
+                }
+            } else if !inputs.rst && !self.state.waits(&inputs) {
                 self.state.count(clocks as u16);
             }
         }
