@@ -44,7 +44,7 @@ pub(super) fn solve_with(
 }
 
 /// The Jacobian from central differences.
-fn differences(equations: impl Fn(&DVector<f64>) -> DVector<f64>, x: &DVector<f64>) -> DMatrix<f64> {
+pub(super) fn differences(equations: impl Fn(&DVector<f64>) -> DVector<f64>, x: &DVector<f64>) -> DMatrix<f64> {
     let slopes = (0..x.len()).map(|column| {
         let (mut ahead, mut behind) = (x.clone(), x.clone());
         ahead[column] += DIFFERENCE;
