@@ -7,7 +7,7 @@ use crate::FOREVER;
 use crate::{Moore, OutputKind, show_each};
 
 /// Largest number of clocks that are simulated to see whether an output changes: those of a computation.
-const MOST_UNSEEN: u64 = 32;
+const MOST_UNSEEN: u64 = LEAD_CLOCKS as u64;
 
 impl State {
     /// Number of further clocks like the last one, which led from `before` to the present state; `None` if it did more
@@ -103,8 +103,8 @@ impl Moore for Pwm {
         show_each(outputs, self.outputs(&inputs).to_raw());
     }
 
-    /// Tries one clock: if it only counts, it and all like it are quiet; if it changes nothing, because the carrier waits,
-    /// all are.
+    /// Looks ahead during a computation. Else it tries one clock: if that only counts, it and all like it are quiet; if it
+    /// changes nothing, because the carrier waits, all are.
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
         let Ok(inputs) = <&[u64; INPUT_PORTS]>::try_from(inputs).map(Inputs::from_raw) else {
             return 0;
