@@ -14,10 +14,9 @@ const RESULTS: &str = include_str!("../../formal/results.txt");
 
 /// The answer to what is `asked` of a task: that of the file, or else that of `compute`.
 pub(crate) fn known_or(task: &Task, asked: &str, compute: impl FnOnce() -> String) -> String {
-    let begin = format!("{} {} | {asked} | ", task.fingerprint(), task.name);
+    let begin = beginning(task, asked);
     let again = std::env::var_os("POSICAST_PROVE_AGAIN").is_some();
-    let known = RESULTS.lines().find_map(|line| line.strip_prefix(&begin));
-    let answer = match known {
+    let answer = match recorded(&begin) {
         Some(answer) if !again => answer.to_owned(),
         _ => compute(),
     };
@@ -26,6 +25,31 @@ pub(crate) fn known_or(task: &Task, asked: &str, compute: impl FnOnce() -> Strin
         file.write_all(format!("{begin}{answer}\n").as_bytes()).unwrap();
     }
     answer
+}
+
+/// The part of a line before the answer.
+fn beginning(task: &Task, asked: &str) -> String {
+    format!("{} {} | {asked} | ", task.fingerprint(), task.name)
+}
+
+/// The answer of the line that begins in this way.
+fn recorded(beginning: &str) -> Option<&'static str> {
+    RESULTS.lines().find_map(|line| line.strip_prefix(beginning))
+}
+
+/// A proof that is not in the file is computed in every run of the tests, without a word.
+#[test]
+fn every_proof_is_recorded() {
+    let proofs = posicast_testbench::blocks::proofs().unwrap();
+    assert!(proofs.len() > 1);
+    let is_missing = |task: &&Task| recorded(&beginning(task, "proven")).is_none();
+    let missing: Vec<&str> = proofs.iter().filter(is_missing).map(|task| task.name).collect();
+    assert!(
+        missing.is_empty(),
+        "{} of {} proofs are not in testbench/formal/results.txt; `scripts/record-proofs` writes it: {missing:?}",
+        missing.len(),
+        proofs.len()
+    );
 }
 
 #[test]
