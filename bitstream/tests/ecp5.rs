@@ -64,7 +64,7 @@ impl Built {
 }
 
 #[test]
-fn ecp5_bits_of_every_kind_of_cell_compute_the_design_and_faults_are_found() {
+fn long_ecp5_bits_of_every_kind_of_cell_compute_the_design_and_faults_are_found() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let built = built(folder);

@@ -214,24 +214,31 @@ fn the_offset_acts_when_a_reading_places_the_axis() {
     assert_eq!(count(&mut bench, "arm"), -70);
 }
 
+fn moves_and_loses_its_encoder(machine: &Machine) {
+    let stage = stage(machine);
+    let options = PlantOptions {
+        position: 0.001,
+        ..PlantOptions::default()
+    };
+    let mut bench = support::bench(machine, &stage, &options, Some(verilated(&stage)), 1);
+    assert!(bench.switch_on(1_000_000).unwrap());
+    queue_move(&mut bench, machine, 0, 500);
+    queue_move(&mut bench, machine, 1, -500);
+    bench.write("start", 0b11).unwrap();
+    bench.clocks(60 * TICK).unwrap();
+    bench.fault_absolute_encoder(1, Some(AbsoluteFault::Inverted(7)));
+    bench.clocks(6 * TICK).unwrap();
+    assert_eq!(bench.field("column", "status", "state").unwrap(), state::FAULT);
+    let (differs, first) = bench.mismatches();
+    assert_eq!(differs, 0, "{first:?}");
+}
+
 #[test]
 fn lockstep_a_move_and_a_lost_encoder() {
-    for machine in [arm(), with_ssi()] {
-        let stage = stage(&machine);
-        let options = PlantOptions {
-            position: 0.001,
-            ..PlantOptions::default()
-        };
-        let mut bench = support::bench(&machine, &stage, &options, Some(verilated(&stage)), 1);
-        assert!(bench.switch_on(1_000_000).unwrap());
-        queue_move(&mut bench, &machine, 0, 500);
-        queue_move(&mut bench, &machine, 1, -500);
-        bench.write("start", 0b11).unwrap();
-        bench.clocks(60 * TICK).unwrap();
-        bench.fault_absolute_encoder(1, Some(AbsoluteFault::Inverted(7)));
-        bench.clocks(6 * TICK).unwrap();
-        assert_eq!(bench.field("column", "status", "state").unwrap(), state::FAULT);
-        let (differs, first) = bench.mismatches();
-        assert_eq!(differs, 0, "{first:?}");
-    }
+    moves_and_loses_its_encoder(&arm());
+}
+
+#[test]
+fn long_lockstep_a_move_and_a_lost_encoder_of_ssi() {
+    moves_and_loses_its_encoder(&with_ssi());
 }

@@ -112,7 +112,7 @@ fn a_self_test_runs_the_pwm_and_nothing_else() {
 }
 
 #[test]
-fn lockstep_a_move_on_the_scale_and_its_trace() {
+fn long_lockstep_a_move_on_the_scale_and_its_trace() {
     let machine = machine();
     let mut bench = bench(&machine, true);
     assert_eq!(self_test(&mut bench, 200), (1325, 1125));

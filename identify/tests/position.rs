@@ -168,7 +168,7 @@ fn long_stated_intervals_hold_the_truth_over_200_logs() {
 }
 
 #[test]
-fn intervals_hold_the_truth_where_noise_has_a_memory() {
+fn long_intervals_hold_the_truth_where_noise_has_a_memory() {
     // Nine tenths of the noise stay from sample to sample: it lasts ten samples, in a period of fifteen.
     const STAYS: f64 = 0.9;
     let truth = stage()[0];

@@ -21,7 +21,7 @@ fn measured(name: &str) -> Measured {
 }
 
 #[test]
-fn coverage_of_the_divider_and_the_schedule_is_explained() {
+fn long_coverage_of_the_divider_and_the_schedule_is_explained() {
     let explanations = all().unwrap();
     for name in ["divider", "schedule"] {
         let measured = measured(name);

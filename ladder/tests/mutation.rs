@@ -24,7 +24,7 @@ fn fates(subject: &Subject, mutants: usize) -> Vec<(Mutant, Fate)> {
 }
 
 #[test]
-fn mutate_no_mutant_of_a_small_block_is_unknown() {
+fn long_mutate_no_mutant_of_a_small_block_is_unknown() {
     for block in ["group", "divider_share"] {
         let fates = fates(&subject(block), 30);
         assert!(fates.len() > 20, "{block}: {} mutants", fates.len());

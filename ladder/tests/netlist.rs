@@ -115,7 +115,7 @@ fn netlist_with_a_wrong_power_up_is_found_by_the_proof() {
 
 /// The multipliers are those of the device; its flip-flops begin at 0, so those that begin at 1 are inverted.
 #[test]
-fn netlist_of_cyclone_v_does_what_the_model_does() {
+fn long_netlist_of_cyclone_v_does_what_the_model_does() {
     let mapped = Mapped::to(Family::Cyclone5, "sliding_mode", NetlistParts::with_multipliers_mapped);
     assert_eq!(mapped.netlist.multipliers, 2);
     let report = simulate(mapped.block.as_ref(), mapped.mapped(), CLOCKS, 1).unwrap();

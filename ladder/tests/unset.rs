@@ -22,7 +22,7 @@ fn verdict(top: &str, modules: Vec<Module>) -> EquivalenceVerdict {
 
 /// Plain registers, pins with synchronisers, and memories.
 #[test]
-fn netlist_nothing_from_before_the_reset_is_shown() {
+fn long_netlist_nothing_from_before_the_reset_is_shown() {
     for name in ["divider", "pulse_counter", "setting_banks"] {
         let (top, modules) = modules(name);
         assert_eq!(verdict(&top, modules), EquivalenceVerdict::Equivalent, "{name}");

@@ -73,7 +73,7 @@ fn lockstep_a_host_at_the_serial_line_of_a_stage() {
 }
 
 #[test]
-fn lockstep_a_host_at_the_spi_lines_of_a_stage() {
+fn long_lockstep_a_host_at_the_spi_lines_of_a_stage() {
     a_few_requests_agree(SPI);
 }
 

@@ -85,7 +85,7 @@ fn refused(output: &Output, folder: &Path, words: &[&str]) {
 }
 
 #[test]
-fn cli_the_bits_of_two_shapers_compute_the_model_and_single_faults_are_found() {
+fn long_cli_the_bits_of_two_shapers_compute_the_model_and_single_faults_are_found() {
     let (scratch, machine) = scratch(TWO_AXES);
     let folder = scratch.path().join("out");
     let output = bitstream(&machine, "icebreaker", &folder, &["--json", "--clocks", "1000000"]);

@@ -1,6 +1,6 @@
 //! The registers on AXI4-Lite and Wishbone: from the machine file to Verilog that equals its model, and files that are refused.
 
-use super::support::{example, generate, posicast, scratch};
+use super::support::{example, generate, one_axis, posicast, scratch};
 use predicates::prelude::*;
 
 /// The XY stage with its registers on a bus.
@@ -49,24 +49,27 @@ fn cli_buses_have_a_top_per_component_and_their_datasheet() {
 
 #[test]
 fn cli_buses_in_a_folder_equal_their_models_and_a_change_is_found() {
-    let (folder, file) = scratch(&xy_stage("axi4-lite"));
-    let output = folder.path().join("xy_stage");
+    let shaper = one_axis("kind = \"zv\"", "frequency_hz = 50.0\ndamping = 0.1");
+    let (folder, file) = scratch(&format!(
+        "{shaper}[axis.encoder]\nfilter_clocks = 4\n[target]\nbus = \"axi4-lite\"\n"
+    ));
+    let output = folder.path().join("one");
     generate(&file, &output).success();
     let verify = || {
         let mut verify = posicast();
         verify.arg("verify").arg(&output);
         verify.args(["--block", "axi_lite_bridge", "--block", "bus_component"]);
-        verify.args(["--cycles", "20000", "--edited"]).assert()
+        verify
+            .args(["--cycles", "5000", "--simulator", "icarus", "--edited"])
+            .assert()
     };
     let said = verify().success();
-    said.stdout(predicate::str::contains("stage, AXI4-Lite"));
-    let top = output.join("rtl/xy_stage_stage_axi.v");
+    said.stdout(predicate::str::contains("pulse_counter, AXI4-Lite"));
+    let top = output.join("rtl/one_x_pulse_counter_axi.v");
     let text = std::fs::read_to_string(&top).unwrap();
-    std::fs::write(
-        &top,
-        text.replacen("assign avm_mapped = ", "assign avm_mapped = 1'b1 | ", 1),
-    )
-    .unwrap();
+    let changed = text.replacen("assign avm_mapped = ", "assign avm_mapped = 1'b1 | ", 1);
+    assert_ne!(changed, text);
+    std::fs::write(&top, changed).unwrap();
     verify().code(1).stdout(predicate::str::contains("s_axi_"));
 }
 

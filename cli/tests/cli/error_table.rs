@@ -59,7 +59,7 @@ fn cli_the_folder_holds_the_file_and_is_verified() {
         "--block",
         "error_table",
         "--cycles",
-        "200000",
+        "20000",
         "--simulator",
         "icarus",
         "--json",

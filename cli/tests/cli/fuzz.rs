@@ -244,7 +244,7 @@ const COMMANDS: [&[&str]; 4] = [
 ];
 
 proptest! {
-    #![proptest_config(config(100))]
+    #![proptest_config(config(25))]
 
     #[test]
     fn prop_damaged_machine_files_are_survived(

@@ -149,7 +149,7 @@ fn cli_verify_without_any_tool_still_gives_a_verdict_and_names_it_the_weaker_che
     let mut verify = posicast();
     verify
         .arg("verify")
-        .arg(example("xy-stage.toml"))
+        .arg(example("robot-joint.toml"))
         .args(["--json", "--block", "shaper"])
         .env("PATH", "");
     let assert = verify.assert().success().stderr(predicates::str::contains("weaker"));

@@ -52,7 +52,7 @@ fn cli_inline_is_generated_with_its_modules_and_pages() {
 }
 
 #[test]
-fn cli_inline_verilog_equals_its_model() {
+fn long_cli_inline_verilog_equals_its_model() {
     let folder = tempfile::tempdir().unwrap();
     let output = folder.path().join("router");
     generate(&example("inline.toml"), &output).success();
@@ -216,7 +216,7 @@ fn cli_inline_with_a_line_is_generated_with_its_registers_and_without_one_nothin
 }
 
 #[test]
-fn cli_inline_verilog_with_a_line_equals_its_model() {
+fn long_cli_inline_verilog_with_a_line_equals_its_model() {
     let (folder, file) = scratch(&linked());
     let output = folder.path().join("router");
     generate(&file, &output).success();

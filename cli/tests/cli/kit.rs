@@ -108,7 +108,7 @@ fn make(out: &Path, settings: &[&str]) -> Output {
 }
 
 #[test]
-fn cli_the_kits_example_is_placed_by_nextpnr() {
+fn long_cli_the_kits_example_is_placed_by_nextpnr() {
     let folder = generated("robot-joint.toml");
     let out = folder.path().join("out");
     let output = make(&out, &[]);

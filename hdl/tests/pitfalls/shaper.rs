@@ -21,7 +21,7 @@ fn for_motion(config: ShaperConfig, channels: u32, modulo: bool) -> ShaperConfig
 }
 
 #[test]
-fn crosssim_shaper_equals_its_model() {
+fn long_crosssim_shaper_equals_its_model() {
     equals_its_model(&["between", "motion"]);
 }
 

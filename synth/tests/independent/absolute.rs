@@ -131,14 +131,14 @@ const FAULTS: [(&str, u64); 5] = [
 ];
 
 #[test]
-fn crosssim_absolute_encoder_counts_as_an_encoder_of_biss_c_moves() {
+fn long_crosssim_absolute_encoder_counts_as_an_encoder_of_biss_c_moves() {
     let tally = tally(&biss(), 300, 1);
     has(&tally, &FAULTS);
     has(&tally, &[("good", 180), ("error", 4), ("delayed", 80)]);
 }
 
 #[test]
-fn crosssim_absolute_encoder_counts_as_an_encoder_of_ssi_in_gray_code_moves() {
+fn long_crosssim_absolute_encoder_counts_as_an_encoder_of_ssi_in_gray_code_moves() {
     let tally = tally(&ssi_gray(), 160, 2);
     has(&tally, &FAULTS[..1]);
     has(

@@ -153,7 +153,7 @@ fn crosssim_a_master_of_pipelined_wishbone_gets_what_the_model_gives() {
 }
 
 #[test]
-fn crosssim_a_stage_on_axi4_lite_and_on_wishbone_gives_what_its_model_gives() {
+fn long_crosssim_a_stage_on_axi4_lite_and_on_wishbone_gives_what_its_model_gives() {
     for bus in ["axi", "wishbone"] {
         answers_as_the_model(&stage(), bus, 1500);
     }

@@ -141,7 +141,7 @@ fn long_prop_a_riscv_works_the_stage_through_its_driver_however_slow_its_bus() {
 
 /// The same program on a VexRiscv in a SoC of LiteX, with the stage as the package's module adds it.
 #[test]
-fn lockstep_a_soc_of_litex_works_the_stage_through_its_driver() {
+fn long_lockstep_a_soc_of_litex_works_the_stage_through_its_driver() {
     let driver = driver(MACHINE);
     let core = Core::litex(&driver);
     let firmware = Firmware::build(&driver, &core);

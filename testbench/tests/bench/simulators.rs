@@ -216,7 +216,7 @@ fn a_built_simulation_is_reused_and_parallel_builds_meet() {
 
 /// Half a shared object would end the process with SIGBUS.
 #[test]
-fn a_kept_file_that_was_damaged_is_made_anew() {
+fn long_a_kept_file_that_was_damaged_is_made_anew() {
     let files = Files::new(COUNTER);
     let ports = counter_ports();
     let source = VerilogSource {
