@@ -1,7 +1,8 @@
 //! Rules for names in the Verilog: lower-case snake case that no tool reserves.
 
 use super::error::EmitCause;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
+use std::sync::LazyLock;
 
 /// Keywords of Verilog (IEEE 1364-2001 and -2005) and SystemVerilog (IEEE 1800-2017), annex B of each.
 const RESERVED: &str = "\
@@ -24,10 +25,13 @@ const RESERVED: &str = "\
     unsigned until until_with untyped use uwire var vectored virtual void wait wait_order wand weak weak0 weak1 while \
     wildcard wire with within wor xnor xor";
 
+/// The same, to be looked up: every net of every module is.
+static RESERVED_WORDS: LazyLock<HashSet<&str>> = LazyLock::new(|| RESERVED.split(' ').collect());
+
 /// Checks a name that is used by itself in the Verilog.
 pub(crate) fn check_name(name: &str) -> Result<(), EmitCause> {
     check_form(name)?;
-    if RESERVED.split(' ').any(|word| word == name) {
+    if RESERVED_WORDS.contains(name) {
         return Err(EmitCause::ReservedWord(name.to_owned()));
     }
     Ok(())
