@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn the_ring_after_a_move_begins_at_its_last_push() {
+    fn long_the_ring_after_a_move_begins_at_its_last_push() {
         for (seed, modes) in [vec![(18.1, 0.05, 1.0)], vec![(24.0, 0.04, 0.6), (61.0, 0.03, 0.4)]]
             .iter()
             .enumerate()

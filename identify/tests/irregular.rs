@@ -82,7 +82,7 @@ fn a_command_between_irregular_rows_is_refused() {
 }
 
 #[test]
-fn rows_that_waver_little_show_the_machine_and_nothing_else() {
+fn long_rows_that_waver_little_show_the_machine_and_nothing_else() {
     for seed in 0..5 {
         let times = times(1500, 0.09, seed);
         for command in commands(1500) {

@@ -63,7 +63,7 @@ fn ringing_noise_is_not_a_mode() {
 }
 
 #[test]
-fn noise_within_the_machine_leaves_the_figures_of_the_notes_and_honest_intervals() {
+fn long_noise_within_the_machine_leaves_the_figures_of_the_notes_and_honest_intervals() {
     // Notes, section 9, "equation noise 1 %": the disturbance rings as the mode does. Least squares on the equation
     // are the best method for it: over 200 such logs they are off by at most 0.8 % and 5.6 %.
     const LOGS: u64 = 24;

@@ -35,7 +35,7 @@ fn long_coverage_of_the_divider_and_the_schedule_is_explained() {
 }
 
 #[test]
-fn coverage_of_idle_inputs_leaves_holes_that_nothing_explains() {
+fn long_coverage_of_idle_inputs_leaves_holes_that_nothing_explains() {
     let block = block("divider");
     let idle = || -> Box<dyn Stimuli> {
         let mut clock = 0;
@@ -54,7 +54,7 @@ fn coverage_of_idle_inputs_leaves_holes_that_nothing_explains() {
 }
 
 #[test]
-fn coverage_without_a_hole_for_an_explanation_is_noticed() {
+fn long_coverage_without_a_hole_for_an_explanation_is_noticed() {
     let measured = [measured("schedule")];
     let explanations = parse("schedule * | * | toggle | clk | it stands still\nother | * | bin | x | y").unwrap();
     let outdated = outdated(&measured, &explanations);
@@ -66,7 +66,7 @@ fn coverage_without_a_hole_for_an_explanation_is_noticed() {
 
 /// Verilator's counts are correct for a module whose behaviour is obvious.
 #[test]
-fn coverage_counts_what_happens_and_nothing_else() {
+fn long_coverage_counts_what_happens_and_nothing_else() {
     const VERILOG: &str = "module plain(input clk, input go, input stay, output reg [1:0] count);\n\
         always @(posedge clk)\n  if (go) begin\n    if (stay) begin\n      count <= count;\n    end else begin\n\
         count <= {1'b0, !count[0]};\n    end\n  end else begin\n    count <= 2'd0;\n  end\nendmodule\n";

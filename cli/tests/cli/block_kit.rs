@@ -160,14 +160,14 @@ fn cli_block_kit_fails_for_wrong_verilog_and_for_missing_clocks() {
 
 #[test]
 fn cli_block_kit_proves_its_properties() {
-    let (_scratch, folder) = kit(&["--block", "encoder_generator"]);
+    let (_scratch, folder) = kit(&["--block", "probe_line"]);
     let proven = make(&folder, "prove");
     assert!(
-        proven.status.success() && said(&proven).contains("proven: encoder_generator"),
+        proven.status.success() && said(&proven).contains("proven: probe_line"),
         "{}",
         said(&proven)
     );
-    let properties = folder.join("formal/encoder_generator_1/properties.sv");
+    let properties = folder.join("formal/probe_line_1/properties.sv");
     let text = std::fs::read_to_string(&properties).unwrap();
     let (before, after) = text
         .rsplit_once("assert (")

@@ -328,7 +328,7 @@ fn peak_memory(case: &Case, path: &str, plot: &str) -> (u64, Value) {
 
 /// Eight times the path takes no more memory, and its picture is no larger than a few thousand points a curve.
 #[test]
-fn cli_memory_does_not_depend_on_the_length_of_the_path() {
+fn long_cli_memory_does_not_depend_on_the_length_of_the_path() {
     let case = Case::new(&MILL.replace("sample_hz = 10_000", "sample_hz = 1_000"));
     let short = peak_memory(&case, &case.file("short.gcode", &print(4_000)), "short.svg");
     let long = peak_memory(&case, &case.file("long.gcode", &print(32_000)), "long.svg");

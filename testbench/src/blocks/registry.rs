@@ -154,6 +154,8 @@ pub struct Trial {
     pub least: u64,
     /// Cases that it must reach more than 20 times.
     pub often: &'static [&'static str],
+    /// Whether only `scripts/verify-all` compares this size.
+    pub long: bool,
 }
 
 impl Trial {
@@ -165,7 +167,17 @@ impl Trial {
             seeds,
             least,
             often: &[],
+            long: false,
         }
+    }
+
+    /// The seed that `scripts/test` runs, if any, and those that only `scripts/verify-all` runs.
+    pub fn short_and_long_seeds(&self) -> (&'static [u64], &'static [u64]) {
+        self.seeds.split_at(usize::from(!self.long))
+    }
+
+    pub(crate) fn long(self) -> Self {
+        Self { long: true, ..self }
     }
 
     pub(crate) fn size(self, size: &'static str) -> Self {

@@ -49,7 +49,7 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
             trial(counter()?, wishbone(false), "pulse counter, Wishbone"),
             trial(counter()?, wishbone(true), "pulse counter, pipelined Wishbone"),
             trial(stage()?, BridgedBus::AxiLite, "stage, AXI4-Lite"),
-            trial(stage()?, wishbone(false), "stage, Wishbone"),
+            trial(stage()?, wishbone(false), "stage, Wishbone").long(),
         ])
     },
     mutants: &[

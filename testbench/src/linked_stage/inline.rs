@@ -42,7 +42,7 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
     trials: || {
         Ok(vec![
             Trial::new(linked(&example()?, false)?, &[1, 2], 2).size("serial"),
-            Trial::new(linked(&example()?, true)?, &[3], 2).size("SPI"),
+            Trial::new(linked(&example()?, true)?, &[3], 2).size("SPI").long(),
         ])
     },
     mutants: &[

@@ -127,6 +127,10 @@ fn cli_lines_end_in_registers_that_the_timing_excludes_and_in_no_others() {
     let with_trace = text.replacen("[axis.limits]", "[axis.trace]\nsamples = 256\n\n[axis.limits]", 1);
     assert_ne!(with_trace, text);
     check_lines(&with_trace, ("de1", "xy_stage_de1"), "xy_stage_stage");
+}
+
+#[test]
+fn long_cli_lines_of_a_stage_with_a_serial_line_end_in_registers_that_the_timing_excludes() {
     check_lines(&linked(), ("de1_link", "xy_stage_link_de1"), "xy_stage_link");
 }
 

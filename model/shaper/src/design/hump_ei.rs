@@ -342,7 +342,7 @@ mod tests {
     }
 
     #[test]
-    fn the_branch_ends_where_others_found_it_and_the_error_names_both_limits() {
+    fn long_the_branch_ends_where_others_found_it_and_the_error_names_both_limits() {
         // Damping at which the branch ends for a tolerance, for one, two and three humps; beyond 0.4 no end was
         // looked for.
         for (tolerance, ends) in [
