@@ -66,7 +66,9 @@ pub(crate) fn caught(block: &dyn Block, from: &str, to: &str, cycles: u64) {
         .unwrap()
     };
     let mut report = compare(&mut sources.icarus(block).unwrap(), cycles.min(EARLY_CLOCKS));
-    if report.result != LockstepVerdict::Mismatch {
+    // Unknown bits are no fault that Verilator's program, or a board, would show.
+    let first = report.blocks[0].first.as_ref();
+    if first.is_none_or(|first| first.actual.contains('x')) {
         report = compare(&mut sources.verilated(block, 1).unwrap(), cycles);
     }
     assert_eq!(report.result, LockstepVerdict::Mismatch, "`{to}` is not found");
