@@ -3,18 +3,20 @@
 use std::fs;
 use std::path::Path;
 
-/// Returns the files under `folder` that the file `head`, which declares its modules, does not name, and that `manifest` does not
-/// declare as programs of their own.
+/// Returns the files under `folder` that neither the file `head` declares as a module nor another program of the `manifest`.
 fn forgotten(folder: &Path, head: &Path, manifest: &str) -> Vec<String> {
-    let text = fs::read_to_string(head).unwrap();
+    let files = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let is_program = |path: &Path| {
+        let name = path.file_stem().unwrap().to_str().unwrap();
+        path == head || manifest.contains(&format!("[[test]]\nname = \"{name}\""))
+    };
+    let (programs, others): (Vec<_>, Vec<_>) = files.partition(|path| is_program(path));
+    let text: String = programs.iter().map(|path| fs::read_to_string(path).unwrap()).collect();
     let mut found = Vec::new();
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
+    for path in others {
+        let name = path.file_stem().unwrap().to_str().unwrap();
         let inner = path.join("mod.rs");
-        let is_module = path.extension().is_some_and(|end| end == "rs") || inner.is_file();
-        let is_program = manifest.contains(&format!("[[test]]\nname = \"{name}\""));
-        if !is_module || is_program || path == head {
+        if path.extension().is_none_or(|end| end != "rs") && !inner.is_file() {
             continue;
         }
         if !text.lines().any(|line| line.ends_with(&format!("mod {name};"))) {

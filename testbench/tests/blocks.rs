@@ -8,7 +8,7 @@
 //! | `crosssim::BLOCK` | Icarus agrees with the model, and shows no `x` |
 //! | `rusthdl::BLOCK` | RustHDL's simulator agrees with the model |
 //! | `mutate::BLOCK::FAULT` | the stimuli find the fault in the Verilog |
-//! | `formal::FILE` | all proofs with the property file `testbench/src/*/FILE.sv` succeed, and all their covers are reached |
+//! | `formal::…` | the proofs: see `proofs.rs` |
 //!
 //! Sizes and faults are rows in `testbench/src/BLOCK/trials.rs`.
 
@@ -20,23 +20,18 @@
     reason = "this is a program of tests"
 )]
 
-#[path = "formal/results.rs"]
+mod proofs;
 mod results;
 mod support;
 
-use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
-use std::time::Duration;
 
-use libtest_mimic::{Arguments, Failed, Trial as Test};
+use libtest_mimic::{Arguments, Trial as Test};
 use posicast_testbench::blocks::{self, BlockTrials, Trial, rusthdl};
-use posicast_testbench::formal;
 
 /// RustHDL's simulator is slow.
 const RUSTHDL_CLOCKS: u64 = 3_000;
-/// Time of a proof whose result is not recorded.
-const PROOF_LIMIT: Duration = Duration::from_secs(500);
 
 fn main() -> ExitCode {
     let arguments = Arguments::from_args();
@@ -47,55 +42,15 @@ fn main() -> ExitCode {
             return ExitCode::FAILURE;
         }
     };
-    let files = match property_files() {
-        Ok(files) => files,
+    let proofs = match proofs::tests(&all) {
+        Ok(proofs) => proofs,
         Err(error) => {
             eprintln!("the folders of the blocks cannot be read: {error}");
             return ExitCode::FAILURE;
         }
     };
-    let proofs = files
-        .into_iter()
-        .map(|file| Test::test(format!("formal::{file}"), move || is_proven(&file)));
     let tests = all.into_iter().flat_map(tests_of).chain(proofs).collect();
     libtest_mimic::run(&arguments, tests).exit_code()
-}
-
-/// Names of the property files in the folders of the blocks.
-fn property_files() -> std::io::Result<Vec<String>> {
-    let mut files = Vec::new();
-    for folder in Path::new(env!("CARGO_MANIFEST_DIR")).join("src").read_dir()? {
-        let folder = folder?.path();
-        if !folder.is_dir() {
-            continue;
-        }
-        for file in folder.read_dir()? {
-            let file = file?.path();
-            let name = file.file_stem().and_then(|name| name.to_str());
-            files.extend(
-                name.filter(|_| file.extension().is_some_and(|end| end == "sv"))
-                    .map(str::to_owned),
-            );
-        }
-    }
-    files.sort();
-    Ok(files)
-}
-
-fn is_proven(file: &str) -> Result<(), Failed> {
-    for task in &blocks::proofs_named(file)? {
-        let result = results::known_or(task, "proven", || {
-            let folder = tempfile::tempdir().expect("a temporary folder");
-            let outcome = formal::run(task, folder.path(), PROOF_LIMIT).expect("the proof runs");
-            assert!(outcome.is_good(), "{outcome:?}");
-            assert!(outcome.assertions > 1 && !outcome.covers.is_empty(), "{outcome:?}");
-            format!("{} assertions, {} covers", outcome.assertions, outcome.covers.len())
-        });
-        if !result.ends_with(" covers") {
-            return Err(format!("{}: {result}", task.name).into());
-        }
-    }
-    Ok(())
 }
 
 fn tests_of(block: BlockTrials) -> Vec<Test> {

@@ -6,7 +6,6 @@ mod bench;
 mod crosssim;
 mod error_table;
 mod first_clocks;
-mod formal;
 mod linked_stage;
 mod pwm;
 mod pwm_fault;

@@ -54,6 +54,7 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
     },
     trials: trials::all,
     mutants: trials::MUTANTS,
+    proof_mutants: trials::PROOF_MUTANTS,
 };
 
 /// An encoder of 32 bits at 5 MHz, from a clock of 50 MHz; it is ready after 20 µs.

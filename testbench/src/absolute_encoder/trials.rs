@@ -1,4 +1,4 @@
-//! The sizes that the tests compare, and faults in the Verilog that the stimuli find.
+//! The sizes that the tests compare, faults in the Verilog that the stimuli find, and faults with which its proofs fail.
 
 use posicast_blocks::absolute_encoder::{
     AbsoluteEncoderConfig, AbsoluteFrame, AbsoluteLimits, AbsoluteProtocol, AbsoluteTimes, FrameCheck, FrameStatusBit,
@@ -6,7 +6,7 @@ use posicast_blocks::absolute_encoder::{
 
 use super::AbsoluteEncoderBlock;
 use crate::Error;
-use crate::blocks::{BlockMutant, Trial};
+use crate::blocks::{BlockMutant, ProofMutant, Trial};
 use crate::formal::refused;
 
 /// Short lines of SSI: a reading of few clocks.
@@ -159,4 +159,25 @@ pub(super) const MUTANTS: &[BlockMutant] = &[
         "in_low",
     )
     .of(IN_GRAY_CODE),
+];
+
+pub(super) const PROOF_MUTANTS: &[ProofMutant] = &[
+    ProofMutant::new(
+        "a frame whose check is not looked at",
+        "right = whole & !word_wrong",
+        "right = whole",
+    )
+    .violates("known_failed"),
+    ProofMutant::new(
+        "a clock of the encoder that is too fast",
+        "half_timer == HALF",
+        "half_timer != HALF",
+    )
+    .violates(""),
+    ProofMutant::new(
+        "a position that goes on without bound",
+        "last_miss = missed == TOLERATED",
+        "last_miss = 1'b0",
+    )
+    .violates(""),
 ];

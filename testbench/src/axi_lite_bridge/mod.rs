@@ -32,6 +32,7 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
     },
     trials: trials::all,
     mutants: trials::MUTANTS,
+    proof_mutants: trials::PROOF_MUTANTS,
 };
 
 /// The bridge, which has one size.

@@ -25,14 +25,16 @@ pub(crate) mod library;
 pub(crate) mod reached;
 pub(crate) mod registry;
 mod sources;
+mod trials;
 
 pub use self::library::{library, library_named, library_sizes};
 pub use self::reached::{Reach, ReachedCount};
 pub use self::registry::{
-    AreaBudget, AreaRow, BenchSizes, BlockMutant, BlockTrials, SmallBench, Trial, areas, benches, proofs,
-    proofs_by_block, proofs_named, proofs_of, small_benches, trials,
+    AreaBudget, AreaRow, BenchSizes, SmallBench, areas, benches, proofs, proofs_by_block, proofs_named, proofs_of,
+    small_benches,
 };
 pub use self::sources::{Sources, rusthdl};
+pub use self::trials::{BlockMutant, BlockTrials, ProofMutant, Trial, trials};
 
 use posicast_blocks::{ClockedBlock, Port};
 use posicast_hdl::SimulationError;

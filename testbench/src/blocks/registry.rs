@@ -6,7 +6,7 @@
 //! | [`small`](RegistryRow::small) | mutants |
 //! | [`proofs`](RegistryRow::proofs) | the formal proofs |
 //! | [`areas`](RegistryRow::areas) | `docs/area.md` |
-//! | [`trials`](RegistryRow::trials), [`mutants`](RegistryRow::mutants) | the tests (`testbench/tests/blocks.rs`) |
+//! | [`trials`](RegistryRow::trials), [`mutants`](RegistryRow::mutants), [`proof_mutants`](RegistryRow::proof_mutants) | the tests (`testbench/tests/blocks.rs`) |
 //!
 //! The row of a new block is in the file of its bench; name the block in `lib.rs`, as a module and in [`REGISTRY`].
 
@@ -18,7 +18,7 @@ use posicast_blocks::sliding_mode::Settings;
 use posicast_blocks::stage::StageConfig;
 use posicast_hdl::emit::Module;
 
-use super::Block;
+use super::{Block, BlockMutant, ProofMutant, Trial};
 use crate::bus_component::BusComponentBlock;
 use crate::component::ComponentBlock;
 use crate::formal::Task;
@@ -44,6 +44,8 @@ pub(crate) struct RegistryRow {
     pub(crate) trials: fn() -> Result<Vec<Trial>, Error>,
     /// Faults in the Verilog that the stimuli must find.
     pub(crate) mutants: &'static [BlockMutant],
+    /// Faults in the Verilog with which a proof must fail.
+    pub(crate) proof_mutants: &'static [ProofMutant],
 }
 
 impl RegistryRow {
@@ -56,6 +58,7 @@ impl RegistryRow {
         areas: || Ok(Vec::new()),
         trials: || Ok(Vec::new()),
         mutants: &[],
+        proof_mutants: &[],
     };
 }
 
@@ -140,114 +143,6 @@ impl AreaRow {
     pub(crate) fn note(self, note: &'static str) -> Self {
         Self { note, ..self }
     }
-}
-
-/// A block at a size that the tests compare, in a million clocks per seed.
-pub struct Trial {
-    /// The block.
-    pub block: Box<dyn Block>,
-    /// Its size, or empty if the tests compare one only.
-    pub size: &'static str,
-    /// Seeds of the runs.
-    pub seeds: &'static [u64],
-    /// Smallest count of each case that a run must reach.
-    pub least: u64,
-    /// Cases that it must reach more than 20 times.
-    pub often: &'static [&'static str],
-    /// Whether only `scripts/verify-all` compares this size.
-    pub long: bool,
-}
-
-impl Trial {
-    /// Creates it without a size.
-    pub(crate) fn new(block: impl Block + 'static, seeds: &'static [u64], least: u64) -> Self {
-        Self {
-            block: Box::new(block),
-            size: "",
-            seeds,
-            least,
-            often: &[],
-            long: false,
-        }
-    }
-
-    /// The seed that `scripts/test` runs, if any, and those that only `scripts/verify-all` runs.
-    pub fn short_and_long_seeds(&self) -> (&'static [u64], &'static [u64]) {
-        self.seeds.split_at(usize::from(!self.long))
-    }
-
-    pub(crate) fn long(self) -> Self {
-        Self { long: true, ..self }
-    }
-
-    pub(crate) fn size(self, size: &'static str) -> Self {
-        Self { size, ..self }
-    }
-
-    pub(crate) fn often(self, often: &'static [&'static str]) -> Self {
-        Self { often, ..self }
-    }
-}
-
-/// A fault in a block's Verilog: the first `from` is replaced by `to`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct BlockMutant {
-    /// The fault in words, which follow "the stimuli find".
-    pub name: &'static str,
-    /// Size of the trial that gets it; empty for the first.
-    pub size: &'static str,
-    /// Text of the Verilog.
-    pub from: &'static str,
-    /// Text that replaces `from`.
-    pub to: &'static str,
-    /// Number of clocks in which the stimuli must find it.
-    pub clocks: u64,
-}
-
-impl BlockMutant {
-    /// Creates a fault that is found within 300,000 clocks of the first trial.
-    pub(crate) const fn new(name: &'static str, from: &'static str, to: &'static str) -> Self {
-        Self {
-            name,
-            size: "",
-            from,
-            to,
-            clocks: 300_000,
-        }
-    }
-
-    pub(crate) const fn of(self, size: &'static str) -> Self {
-        Self { size, ..self }
-    }
-
-    pub(crate) const fn within(self, clocks: u64) -> Self {
-        Self { clocks, ..self }
-    }
-}
-
-/// The tests of a kind of block.
-pub struct BlockTrials {
-    /// The block's name.
-    pub name: &'static str,
-    /// Its sizes.
-    pub trials: Vec<Trial>,
-    /// Its faults.
-    pub mutants: &'static [BlockMutant],
-}
-
-/// Returns the tests of every kind of block.
-///
-/// # Errors
-/// As [`benches`].
-pub fn trials() -> Result<Vec<BlockTrials>, Error> {
-    let of_row = |row: &RegistryRow| {
-        Ok(BlockTrials {
-            name: row.name,
-            trials: (row.trials)()?,
-            mutants: row.mutants,
-        })
-    };
-    REGISTRY.iter().map(of_row).collect()
 }
 
 /// Returns the single bench of a row.

@@ -1,8 +1,8 @@
-//! The size that the tests compare, and faults in the Verilog that the stimuli find.
+//! The size that the tests compare, faults in the Verilog that the stimuli find, and faults with which its proofs fail.
 
 use super::CaptureBlock;
 use crate::Error;
-use crate::blocks::{BlockMutant, Trial};
+use crate::blocks::{BlockMutant, ProofMutant, Trial};
 
 pub(super) fn all() -> Result<Vec<Trial>, Error> {
     Ok(vec![Trial::new(CaptureBlock::new("", "alone"), &[1, 2], 20)])
@@ -64,4 +64,19 @@ pub(super) const MUTANTS: &[BlockMutant] = &[
         "memory_overflows | (overflowed_q & !clear_flags)",
         "(memory_overflows | overflowed_q) & !clear_flags",
     ),
+];
+
+pub(super) const PROOF_MUTANTS: &[ProofMutant] = &[
+    ProofMutant::new(
+        "an edge of a line that was not steady",
+        "lasts >= filter_clocks",
+        "lasts + 16'd1 >= filter_clocks",
+    )
+    .violates("edge_is_steady"),
+    ProofMutant::new(
+        "an entry that is written over",
+        "place = oldest + entries_q[3:0]",
+        "place = oldest",
+    )
+    .violates("chosen_in_order"),
 ];

@@ -1,10 +1,10 @@
-//! The sizes that the tests compare, and faults in the Verilog that the stimuli find.
+//! The sizes that the tests compare, faults in the Verilog that the stimuli find, and faults with which its proofs fail.
 
 use posicast_blocks::cascade::CascadeConfig;
 
 use super::CascadeBlock;
 use crate::Error;
-use crate::blocks::{BlockMutant, Trial};
+use crate::blocks::{BlockMutant, ProofMutant, Trial};
 use crate::formal::refused;
 
 pub(super) fn all() -> Result<Vec<Trial>, Error> {
@@ -24,4 +24,19 @@ pub(super) fn all() -> Result<Vec<Trial>, Error> {
 pub(super) const MUTANTS: &[BlockMutant] = &[
     BlockMutant::new("a history that ages a sample late", ">= age", "> age").of("4 stages"),
     BlockMutant::new("rounding down", "HALF = 36'sd8", "HALF = 36'sd7").of("4 stages"),
+];
+
+pub(super) const PROOF_MUTANTS: &[ProofMutant] = &[
+    ProofMutant::new(
+        "halves that are dropped",
+        "assign rounded = sum + HALF",
+        "assign rounded = sum",
+    )
+    .violates("result"),
+    ProofMutant::new(
+        "a sample from before the start",
+        "delays_data >= age",
+        "delays_data > age",
+    )
+    .violates("before_known"),
 ];

@@ -31,6 +31,7 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
     },
     trials: trials::all,
     mutants: trials::MUTANTS,
+    proof_mutants: trials::PROOF_MUTANTS,
 };
 
 /// Rows of this spacing, and any list.

@@ -14,7 +14,7 @@ use crate::Error;
 use crate::blocks::changes::Changes;
 use crate::blocks::reached::AtThePorts;
 use crate::blocks::registry::RegistryRow;
-use crate::blocks::{Bins, Block, Reach, inside, not_in_rusthdl};
+use crate::blocks::{Bins, Block, ProofMutant, Reach, inside, not_in_rusthdl};
 use crate::stimuli::Stimuli;
 
 /// The block's row in the registry.
@@ -25,6 +25,12 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
         Ok(components.map(|block| Box::new(block) as Box<dyn Block>).collect())
     },
     proofs: || Ok(vec![crate::sliding_mode::proofs::law_and_bank()?]),
+    proof_mutants: &[ProofMutant::new(
+        "a law that changes in a pass",
+        "applies = waits && ends",
+        "applies = waits",
+    )
+    .of("law_and_bank")],
     ..RegistryRow::EMPTY
 };
 

@@ -1,10 +1,10 @@
-//! The sizes that the tests compare, and faults in the Verilog that the stimuli find.
+//! The sizes that the tests compare, faults in the Verilog that the stimuli find, and faults with which its proofs fail.
 
 use posicast_blocks::divider::DividerConfig;
 
 use super::DividerBlock;
 use crate::Error;
-use crate::blocks::{BlockMutant, Trial};
+use crate::blocks::{BlockMutant, ProofMutant, Trial};
 use crate::formal::refused;
 
 pub(super) fn all() -> Result<Vec<Trial>, Error> {
@@ -23,3 +23,10 @@ pub(super) const MUTANTS: &[BlockMutant] = &[BlockMutant::new(
     "FITS_PHASE = 7'd65",
     "FITS_PHASE = 7'd64",
 )];
+
+pub(super) const PROOF_MUTANTS: &[ProofMutant] = &[ProofMutant::new(
+    "a division by no clocks",
+    "divisor_next = elapsed | one_tick",
+    "divisor_next = elapsed",
+)
+.violates("known_operands")];

@@ -37,6 +37,7 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
     },
     trials: trials::all,
     mutants: trials::MUTANTS,
+    proof_mutants: trials::PROOF_MUTANTS,
 };
 
 /// The drive command, which has one size.

@@ -1,8 +1,8 @@
-//! The sizes that the tests compare, and faults in the Verilog that the stimuli find.
+//! The sizes that the tests compare, faults in the Verilog that the stimuli find, and faults with which its proofs fail.
 
 use super::DriveCommandBlock;
 use crate::Error;
-use crate::blocks::{BlockMutant, Trial};
+use crate::blocks::{BlockMutant, ProofMutant, Trial};
 
 pub(super) fn all() -> Result<Vec<Trial>, Error> {
     Ok(vec![Trial::new(DriveCommandBlock::new("", "alone"), &[1, 2], 50)])
@@ -41,3 +41,10 @@ pub(super) const MUTANTS: &[BlockMutant] = &[
         "drive_enable_q <= axis_drive_enable | next_active",
     ),
 ];
+
+pub(super) const PROOF_MUTANTS: &[ProofMutant] = &[ProofMutant::new(
+    "a mask that goes with the self test",
+    "masked <= next_test | tested",
+    "masked <= next_test",
+)
+.violates("mask_")];

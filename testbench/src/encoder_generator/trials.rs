@@ -1,8 +1,8 @@
-//! The sizes that the tests compare, and faults in the Verilog that the stimuli find.
+//! The sizes that the tests compare, faults in the Verilog that the stimuli find, and faults with which its proofs fail.
 
 use super::EncoderGeneratorBlock;
 use crate::Error;
-use crate::blocks::{BlockMutant, Trial};
+use crate::blocks::{BlockMutant, ProofMutant, Trial};
 
 pub(super) fn all() -> Result<Vec<Trial>, Error> {
     Ok(vec![Trial::new(EncoderGeneratorBlock::new("", "alone"), &[1, 2], 20)])
@@ -31,3 +31,6 @@ pub(super) const MUTANTS: &[BlockMutant] = &[
     ),
     BlockMutant::new("a rate without its sign", "{{32{rate[31]}}, rate}", "{32'd0, rate}"),
 ];
+
+pub(super) const PROOF_MUTANTS: &[ProofMutant] =
+    &[ProofMutant::new("lines that turn back at once", "if (!moved) begin", "begin").violates("every_other_clock")];

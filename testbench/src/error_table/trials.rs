@@ -1,8 +1,8 @@
-//! The sizes that the tests compare, and faults in the Verilog that the stimuli find.
+//! The sizes that the tests compare, faults in the Verilog that the stimuli find, and faults with which its proofs fail.
 
 use super::ErrorTableBlock;
 use crate::Error;
-use crate::blocks::{BlockMutant, Trial};
+use crate::blocks::{BlockMutant, ProofMutant, Trial};
 
 pub(super) fn all() -> Result<Vec<Trial>, Error> {
     let of = |entries, spacing_bits| -> Result<ErrorTableBlock, Error> {
@@ -45,4 +45,27 @@ pub(super) const MUTANTS: &[BlockMutant] = &[
         "beyond = sum_bits[32] ^ sum_bits[31]",
         "beyond = sum_bits[32] & ~sum_bits[32]",
     ),
+];
+
+pub(super) const PROOF_MUTANTS: &[ProofMutant] = &[
+    ProofMutant::new(
+        "a bank that changes while it counts",
+        "if (off) begin",
+        "if (1'b1) begin",
+    )
+    .violates("taken_at_0"),
+    ProofMutant::new(
+        "an entry that is too steep",
+        "step <= MOST_STEP",
+        "step <= MOST_STEP + 20'sd1",
+    )
+    .violates("neighbours"),
+    ProofMutant::new("an entry of a bank in use", "(loaded & !off)", "(1'b0)").violates(""),
+    ProofMutant::new("a neighbour behind the table", "index < LAST", "index <= LAST").of("error_lookup"),
+    ProofMutant::new(
+        "an average that is rounded down",
+        "rounded = average + half",
+        "rounded = average",
+    )
+    .of("error_lookup"),
 ];

@@ -1,8 +1,8 @@
-//! The sizes that the tests compare, and faults in the Verilog that the stimuli find.
+//! The sizes that the tests compare, faults in the Verilog that the stimuli find, and faults with which its proofs fail.
 
 use super::ExcitationBlock;
 use crate::Error;
-use crate::blocks::{BlockMutant, Trial};
+use crate::blocks::{BlockMutant, ProofMutant, Trial};
 
 pub(super) fn all() -> Result<Vec<Trial>, Error> {
     Ok(vec![Trial::new(ExcitationBlock::new("", "alone"), &[1, 2], 10)])
@@ -20,3 +20,10 @@ pub(super) const MUTANTS: &[BlockMutant] = &[
     ),
     BlockMutant::new("a chirp without end", "too_fast = turned", "too_fast = 1'b0").within(1_000_000),
 ];
+
+pub(super) const PROOF_MUTANTS: &[ProofMutant] = &[ProofMutant::new(
+    "a test signal that is not allowed",
+    "enable & allowed & (|kind)",
+    "enable & (|kind)",
+)
+.violates("cut_off")];

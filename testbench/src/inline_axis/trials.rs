@@ -1,10 +1,10 @@
-//! The sizes that the tests compare, and faults in the Verilog that the stimuli find.
+//! The sizes that the tests compare, faults in the Verilog that the stimuli find, and faults with which its proofs fail.
 
 use posicast_blocks::inline_axis::{InlineAxisConfig, InlineLinesActiveLow, MOST_TICK_STEPS};
 
 use super::InlineAxisBlock;
 use crate::Error;
-use crate::blocks::{BlockMutant, Trial};
+use crate::blocks::{BlockMutant, ProofMutant, Trial};
 use crate::formal::refused;
 
 pub(super) fn all() -> Result<Vec<Trial>, Error> {
@@ -45,3 +45,10 @@ pub(super) const MUTANTS: &[BlockMutant] = &[
     ),
     BlockMutant::new("a line whose level is not turned", "pin_a ^ A_LOW", "pin_a"),
 ];
+
+pub(super) const PROOF_MUTANTS: &[ProofMutant] = &[ProofMutant::new(
+    "a limit of the input that is one too high",
+    "biased > MOST",
+    "biased > (MOST + 18'd1)",
+)
+.violates("stops_at_once")];

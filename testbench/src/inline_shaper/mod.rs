@@ -41,6 +41,7 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
     proofs: proofs::tasks,
     trials: trials::all,
     mutants: trials::MUTANTS,
+    proof_mutants: trials::PROOF_MUTANTS,
     ..RegistryRow::EMPTY
 };
 

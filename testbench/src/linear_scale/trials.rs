@@ -1,8 +1,8 @@
-//! The sizes that the tests compare, and faults in the Verilog that the stimuli find.
+//! The sizes that the tests compare, faults in the Verilog that the stimuli find, and faults with which its proofs fail.
 
 use super::LinearScaleBlock;
 use crate::Error;
-use crate::blocks::{BlockMutant, Trial};
+use crate::blocks::{BlockMutant, ProofMutant, Trial};
 
 pub(super) fn all() -> Result<Vec<Trial>, Error> {
     Ok(vec![Trial::new(LinearScaleBlock::new("", "alone"), &[1, 2], 20)])
@@ -29,4 +29,20 @@ pub(super) const MUTANTS: &[BlockMutant] = &[
         "other_entering = other_reference << 31",
         "other_entering = 32'd0",
     ),
+];
+
+pub(super) const PROOF_MUTANTS: &[ProofMutant] = &[
+    ProofMutant::new(
+        "a tick over the one that is computed",
+        "takes_positions = tick & !positions_wait",
+        "takes_positions = tick",
+    )
+    .violates("known_ahead"),
+    ProofMutant::new(
+        "a ratio that is cut instead of rounded",
+        "product_bit & (round_up | !begun)",
+        "product_bit & round_up",
+    )
+    .of("serial_ratio")
+    .violates("known_round"),
 ];

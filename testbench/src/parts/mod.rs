@@ -35,6 +35,7 @@ pub(crate) const ABSOLUTE_FEEDBACK: RegistryRow = RegistryRow {
     proofs: || Ok(vec![proofs::absolute_feedback()?]),
     trials: || Ok(vec![trials::trial(SmallPart::AbsoluteFeedback, "")]),
     mutants: trials::ABSOLUTE_FEEDBACK,
+    proof_mutants: trials::ABSOLUTE_FEEDBACK_PROOFS,
     areas: || Ok(vec![AreaRow::new("", absolute_feedback::emit("")?)]),
 };
 pub(crate) const TIME_BASE: RegistryRow = RegistryRow {
@@ -60,6 +61,7 @@ pub(crate) const TIME_BASE: RegistryRow = RegistryRow {
             "",
         )])
     },
+    proof_mutants: trials::TIME_BASE_PROOFS,
     ..RegistryRow::EMPTY
 };
 pub(crate) const SCHEDULE: RegistryRow = RegistryRow {
@@ -83,6 +85,7 @@ pub(crate) const SCHEDULE: RegistryRow = RegistryRow {
         )])
     },
     mutants: trials::SCHEDULE,
+    proof_mutants: trials::SCHEDULE_PROOFS,
     ..RegistryRow::EMPTY
 };
 pub(crate) const DIVIDER_SHARE: RegistryRow = RegistryRow {
@@ -98,6 +101,7 @@ pub(crate) const DIVIDER_SHARE: RegistryRow = RegistryRow {
         ])
     },
     mutants: trials::DIVIDER_SHARE,
+    proof_mutants: trials::DIVIDER_SHARE_PROOFS,
     ..RegistryRow::EMPTY
 };
 pub(crate) const GROUP: RegistryRow = RegistryRow {
@@ -112,6 +116,7 @@ pub(crate) const GROUP: RegistryRow = RegistryRow {
         ])
     },
     mutants: trials::GROUP,
+    proof_mutants: trials::GROUP_PROOFS,
     ..RegistryRow::EMPTY
 };
 /// Sizes of the group that are compared and proven.
@@ -146,6 +151,7 @@ pub(crate) const INLINE_GROUP: RegistryRow = RegistryRow {
         ])
     },
     mutants: trials::INLINE_GROUP,
+    proof_mutants: trials::INLINE_GROUP_PROOFS,
     ..RegistryRow::EMPTY
 };
 pub(crate) const LASTING_DEVIATION: RegistryRow = RegistryRow {
@@ -155,6 +161,7 @@ pub(crate) const LASTING_DEVIATION: RegistryRow = RegistryRow {
     proofs: || Ok(vec![proofs::lasting_deviation()?]),
     trials: || Ok(vec![trials::trial(SmallPart::LastingDeviation, "")]),
     mutants: trials::LASTING_DEVIATION,
+    proof_mutants: trials::LASTING_DEVIATION_PROOFS,
     areas: || Ok(vec![AreaRow::new("", lasting_deviation::emit("")?)]),
 };
 pub(crate) const PROBE_LINE: RegistryRow = RegistryRow {
@@ -164,6 +171,7 @@ pub(crate) const PROBE_LINE: RegistryRow = RegistryRow {
     proofs: || Ok(vec![proofs::probe_line()?]),
     trials: || Ok(vec![trials::trial(SmallPart::ProbeLine, "")]),
     mutants: trials::PROBE_LINE,
+    proof_mutants: trials::PROBE_LINE_PROOFS,
     areas: || Ok(vec![AreaRow::new("", probe_line::emit("")?)]),
 };
 pub(crate) const REALIGN: RegistryRow = RegistryRow {
@@ -173,6 +181,7 @@ pub(crate) const REALIGN: RegistryRow = RegistryRow {
     proofs: || Ok(vec![proofs::realign()?]),
     trials: || Ok(vec![trials::trial(SmallPart::Realign, "")]),
     mutants: trials::REALIGN,
+    proof_mutants: trials::REALIGN_PROOFS,
     areas: || Ok(vec![AreaRow::new("", realign::emit("")?)]),
 };
 pub(crate) const SAMPLE_SELECT: RegistryRow = RegistryRow {
@@ -181,6 +190,7 @@ pub(crate) const SAMPLE_SELECT: RegistryRow = RegistryRow {
     small: || Ok(small(PartBlock::new(WIDE_SAMPLES, ""), "3 channels of 32 bits")),
     proofs: || [1, 3].map(proofs::sample_select).into_iter().collect(),
     trials: || Ok(vec![trials::trial(WIDE_SAMPLES, "")]),
+    proof_mutants: trials::SAMPLE_SELECT_PROOFS,
     ..RegistryRow::EMPTY
 };
 pub(crate) const SETTING_BANKS: RegistryRow = RegistryRow {
@@ -201,6 +211,7 @@ pub(crate) const SETTING_BANKS: RegistryRow = RegistryRow {
         Ok(vec![trials::trial(SmallPart::SettingBanks(Settings(words)), "")])
     },
     mutants: trials::SETTING_BANKS,
+    proof_mutants: trials::SETTING_BANKS_PROOFS,
     ..RegistryRow::EMPTY
 };
 

@@ -1,7 +1,7 @@
-//! Faults in the Verilog of the small parts that the stimuli find.
+//! Faults in the Verilog of the small parts: some that the stimuli find, others with which their proofs fail.
 
 use super::{PartBlock, SmallPart};
-use crate::blocks::{BlockMutant, Trial};
+use crate::blocks::{BlockMutant, ProofMutant, Trial};
 
 /// A part as the tests compare it.
 pub(super) fn trial(part: SmallPart, size: &'static str) -> Trial {
@@ -101,4 +101,102 @@ pub(super) const SETTING_BANKS: &[BlockMutant] = &[
         "read_row = row;",
     ),
     BlockMutant::new("a read-back while the controller reads", "& !busy", ""),
+];
+
+pub(super) const SAMPLE_SELECT_PROOFS: &[ProofMutant] = &[ProofMutant::new(
+    "a start of the other source",
+    "start_q_next = pin_start",
+    "start_q_next = pin_start | host_start",
+)
+.violates("exact")];
+
+pub(super) const SCHEDULE_PROOFS: &[ProofMutant] =
+    &[ProofMutant::new("a control a clock late", "LAST = 17'd0", "LAST = 17'd1").violates("exactly")];
+
+pub(super) const TIME_BASE_PROOFS: &[ProofMutant] = &[ProofMutant::new(
+    "a division that starts with its tick",
+    "divide_q <= tick_q;",
+    "divide_q <= tick_q_next;",
+)
+.violates("divide_follows")];
+
+pub(super) const DIVIDER_SHARE_PROOFS: &[ProofMutant] = &[ProofMutant::new(
+    "a share that begins with the second channel",
+    "FIRST_CHANNEL = 4'd0",
+    "FIRST_CHANNEL = 4'd1",
+)
+.violates("next_follows")];
+
+pub(super) const INLINE_GROUP_PROOFS: &[ProofMutant] = &[ProofMutant::new(
+    "shaping that changes in motion",
+    "tick & (all_settled | !run_q)",
+    "tick",
+)
+.violates("changes_at_rest")];
+
+pub(super) const LASTING_DEVIATION_PROOFS: &[ProofMutant] = &[
+    ProofMutant::new(
+        "a deviation that is passed on a tick late",
+        "count >= ticks",
+        "count > ticks",
+    )
+    .violates(""),
+    ProofMutant::new(
+        "a count that goes on after an excursion",
+        "count_next = 16'd0",
+        "count_next = count",
+    )
+    .violates(""),
+];
+
+pub(super) const PROBE_LINE_PROOFS: &[ProofMutant] = &[
+    ProofMutant::new("a probe of the other polarity", "probe ^ active_low", "probe").violates(""),
+    ProofMutant::new(
+        "a probe that is filtered from its reset on",
+        "primed[3] & (|filter_clocks)",
+        "(|filter_clocks)",
+    )
+    .violates(""),
+];
+
+pub(super) const REALIGN_PROOFS: &[ProofMutant] = &[
+    ProofMutant::new(
+        "a correction after which nothing counts anew",
+        "enabled | correct",
+        "enabled",
+    )
+    .violates("aligns_after"),
+    ProofMutant::new(
+        "steps of a correction without their sign",
+        "{16{realign_steps[15]}}",
+        "{16{1'b0}}",
+    )
+    .violates("counts_the_hosts"),
+];
+
+pub(super) const SETTING_BANKS_PROOFS: &[ProofMutant] = &[
+    ProofMutant::new("a setting that changes in use", " & (setting_bank != bank)", "").violates("active_stays"),
+    ProofMutant::new("a read back in a pass", "& !busy", "").violates("serves_idle"),
+];
+
+pub(super) const GROUP_PROOFS: &[ProofMutant] = &[ProofMutant::new(
+    "an axis that starts alone",
+    "start_q_0 <= start & !blocked",
+    "start_q_0_next = start",
+)
+.violates("all_or_none")];
+
+pub(super) const ABSOLUTE_FEEDBACK_PROOFS: &[ProofMutant] = &[
+    ProofMutant::new(
+        "a first reading that is not taken modulo the range",
+        "(reading_bits - offset) & range",
+        "reading_bits - offset",
+    )
+    .violates("placed_in_range"),
+    ProofMutant::new(
+        "an axis that is ready before it is placed",
+        "drive_ready & (steady | lost)",
+        "drive_ready",
+    )
+    .violates("ready_when_steady"),
 ];

@@ -1,8 +1,8 @@
-//! The sizes that the tests compare, and faults in the Verilog that the stimuli find.
+//! The sizes that the tests compare, faults in the Verilog that the stimuli find, and faults with which its proofs fail.
 
 use super::PulseCounterBlock;
 use crate::Error;
-use crate::blocks::{BlockMutant, Trial};
+use crate::blocks::{BlockMutant, ProofMutant, Trial};
 
 pub(super) fn all() -> Result<Vec<Trial>, Error> {
     Ok(vec![Trial::new(PulseCounterBlock::new("", "alone"), &[1, 2], 21)])
@@ -31,3 +31,10 @@ pub(super) const MUTANTS: &[BlockMutant] = &[
         "illegal_high[2:0] == 3'd7",
     ),
 ];
+
+pub(super) const PROOF_MUTANTS: &[ProofMutant] = &[ProofMutant::new(
+    "an illegal transition without a flag",
+    "assign illegal = both & ready",
+    "assign illegal = both & ready & swap",
+)
+.violates("illegal_flags")];

@@ -52,6 +52,7 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
     },
     trials: trials::all,
     mutants: trials::MUTANTS,
+    proof_mutants: trials::PROOF_MUTANTS,
 };
 
 /// The PWM with its polarities and smallest times.

@@ -1,10 +1,10 @@
-//! The sizes that the tests compare, and faults in the Verilog that the stimuli find.
+//! The sizes that the tests compare, faults in the Verilog that the stimuli find, and faults with which its proofs fail.
 
 use posicast_blocks::pwm::{ActiveLow, PwmConfig};
 
 use super::PwmBlock;
 use crate::Error;
-use crate::blocks::{BlockMutant, Trial};
+use crate::blocks::{BlockMutant, ProofMutant, Trial};
 use crate::formal::refused;
 
 pub(super) fn all() -> Result<Vec<Trial>, Error> {
@@ -43,3 +43,6 @@ pub(super) const MUTANTS: &[BlockMutant] = &[
     .within(600_000),
     BlockMutant::new("a pin that the mask forgets", "b_low_gate & on", "b_low_gate & armed").within(600_000),
 ];
+
+pub(super) const PROOF_MUTANTS: &[ProofMutant] =
+    &[ProofMutant::new("half a dead time", "lasts = dead_time;", "lasts = dead_time >> 1;").violates("dead_time_")];

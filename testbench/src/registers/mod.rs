@@ -22,7 +22,7 @@ use posicast_hdl::registers::emit;
 use crate::Error;
 use crate::blocks::reached::AtThePorts;
 use crate::blocks::registry::{AreaRow, RegistryRow, small};
-use crate::blocks::{Bins, Block, Reach, not_in_rusthdl};
+use crate::blocks::{Bins, Block, ProofMutant, Reach, not_in_rusthdl};
 use crate::formal::refused;
 use crate::lockstep::Clock;
 use crate::shaper;
@@ -46,6 +46,21 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
         Ok(small(RegistersBlock::new(map, ""), "bank of pwm"))
     },
     proofs: proofs::tasks,
+    proof_mutants: &[
+        ProofMutant::new(
+            "a byte that nobody wrote",
+            "phase[15:8] <= avs_writedata[15:8]",
+            "phase[15:8] <= avs_writedata[7:0]",
+        )
+        .violates("holds_what_was_written"),
+        ProofMutant::new(
+            "a write after its commit",
+            "if (write_law && !waits && avs_byteenable[0])",
+            "if (write_law && avs_byteenable[0])",
+        )
+        .of("commit")
+        .violates("all_at_once"),
+    ],
     areas: || {
         let motion = shaper::area_config()?.for_motion(shaper::MOTION);
         let pwm = PwmConfig::new(ActiveLow::default(), 25, 50).map_err(refused)?;

@@ -31,6 +31,7 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
     areas: || Ok(vec![AreaRow::new("64 entries", emit("")?)]),
     trials: trials::all,
     mutants: trials::MUTANTS,
+    proof_mutants: trials::PROOF_MUTANTS,
 };
 
 /// The command FIFO, which has one size.

@@ -1,8 +1,8 @@
-//! The sizes that the tests compare, and faults in the Verilog that the stimuli find.
+//! The sizes that the tests compare, faults in the Verilog that the stimuli find, and faults with which its proofs fail.
 
 use super::SegmentsBlock;
 use crate::Error;
-use crate::blocks::{BlockMutant, Trial};
+use crate::blocks::{BlockMutant, ProofMutant, Trial};
 
 pub(super) fn all() -> Result<Vec<Trial>, Error> {
     Ok(vec![Trial::new(SegmentsBlock::new("", "alone"), &[1, 2], 50)])
@@ -62,4 +62,31 @@ pub(super) const MUTANTS: &[BlockMutant] = &[
         "brakes & stands",
         "brakes & moves",
     ),
+];
+
+pub(super) const PROOF_MUTANTS: &[ProofMutant] = &[
+    ProofMutant::new(
+        "a fifo that writes over its oldest entry",
+        "(({2'd0, slot} << 2)",
+        "(({2'd0, head} << 2)",
+    )
+    .violates("no_overwrite"),
+    ProofMutant::new(
+        "a fifo that writes over the entry that plays",
+        "slot = (head + behind) + 6'd1",
+        "slot = head + behind",
+    )
+    .violates("pointers"),
+    ProofMutant::new(
+        "a command that goes on to the end of its word",
+        "leaves = past_reach & moving",
+        "leaves = stands & moving",
+    )
+    .of("segments_range"),
+    ProofMutant::new(
+        "a stop that slows down past the end of its word",
+        "brakes & stands",
+        "brakes & moves",
+    )
+    .of("segments_range"),
 ];

@@ -46,6 +46,7 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
     },
     trials: trials::all,
     mutants: trials::MUTANTS,
+    proof_mutants: trials::PROOF_MUTANTS,
 };
 
 /// Position, velocity and acceleration.

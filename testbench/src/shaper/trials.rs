@@ -1,11 +1,11 @@
-//! The sizes that the tests compare, and faults in the Verilog that the stimuli find.
+//! The sizes that the tests compare, faults in the Verilog that the stimuli find, and faults with which its proofs fail.
 
 use posicast_blocks::shaper::{ShaperConfig, ShaperMotion};
 use posicast_taps::TapTable;
 
 use super::{ShaperBlock, tap_table};
 use crate::Error;
-use crate::blocks::{BlockMutant, Trial};
+use crate::blocks::{BlockMutant, ProofMutant, Trial};
 use crate::formal::refused;
 
 /// Cases that a million clocks reach often.
@@ -94,4 +94,86 @@ pub(super) const MUTANTS: &[BlockMutant] = &[
     ),
     BlockMutant::new("a read-back in a pass", "& !busy", "").of("three channels"),
     BlockMutant::new("a read-back at the same time as a write", "& !tap_write", "").of("three channels"),
+];
+
+pub(super) const PROOF_MUTANTS: &[ProofMutant] = &[
+    ProofMutant::new(
+        "a product that is subtracted",
+        "accumulator + wide_product",
+        "accumulator - wide_product",
+    )
+    .violates("sum_adds"),
+    ProofMutant::new(
+        "a pass that ends a tap early",
+        "tap_number = {1'd0, tap} + 7'd1",
+        "tap_number = {1'd0, tap} + 7'd2",
+    )
+    .violates("pass_"),
+    ProofMutant::new("a sample of the wrong side", "= head - delay", "= head + delay").violates("address"),
+    ProofMutant::new(
+        "a swap to a bank that does not sum to one",
+        "(swap_bank == 2'd1) & (sum_1 == UNITY)",
+        "(swap_bank == 2'd1)",
+    )
+    .violates("table_to_come"),
+    ProofMutant::new(
+        "a result clamped to the wrong end",
+        "y_q_next = Y_MAX",
+        "y_q_next = Y_MIN",
+    )
+    .violates("result"),
+    ProofMutant::new(
+        "a result that is cut instead of rounded",
+        "HALF = 26'sd8",
+        "HALF = 26'sd0",
+    )
+    .of("shaper_small")
+    .violates("total"),
+    ProofMutant::new("a sample that is an older one", "delay > age", "delay >= age")
+        .of("shaper_small")
+        .violates("stage_coefficient"),
+    ProofMutant::new("a tap that is read back in a pass", "& !busy", "")
+        .of("shaper_small")
+        .violates("read_"),
+    ProofMutant::new(
+        "a tap of the other bank",
+        "read_address = write_address;",
+        "read_address = write_address ^ 3'd4;",
+    )
+    .of("shaper_small")
+    .violates("read_word"),
+    ProofMutant::new(
+        "an increment that goes through both tables",
+        "(old_tap == below)",
+        "(old_tap & below)",
+    )
+    .of("shaper_motion")
+    .violates("made_"),
+    ProofMutant::new(
+        "a handover that ends a sample early",
+        "since_q == reach",
+        "next_since == reach",
+    )
+    .of("shaper_motion")
+    .violates("handover_"),
+    ProofMutant::new("a swap that does not wait", "(still >= reach)", "(still >= 6'd1)")
+        .of("shaper_motion")
+        .violates("swap_takes"),
+    ProofMutant::new(
+        "a channel that gets the sample of another",
+        "if (lasts[4])",
+        "if (lasts[5])",
+    )
+    .of("shaper_motion")
+    .violates("pass_sample"),
+    ProofMutant::new("a position that clamps where it should wrap", "& !wraps", "")
+        .of("channel_sums")
+        .violates("result"),
+    ProofMutant::new(
+        "a product lost between channels",
+        "if (busy_q) begin",
+        "if (busy_q & (channel != FIRST_CHANNEL)) begin",
+    )
+    .of("channel_sums")
+    .violates("sum_adds"),
 ];

@@ -29,6 +29,7 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
     areas: || Ok(vec![AreaRow::new("all laws", emit("")?)]),
     trials: trials::all,
     mutants: trials::MUTANTS,
+    proof_mutants: trials::PROOF_MUTANTS,
 };
 
 /// The controller, which has one size: its settings configure it.

@@ -1,8 +1,8 @@
-//! The sizes that the tests compare, and faults in the Verilog that the stimuli find.
+//! The sizes that the tests compare, faults in the Verilog that the stimuli find, and faults with which its proofs fail.
 
 use super::SlidingModeBlock;
 use crate::Error;
-use crate::blocks::{BlockMutant, Trial};
+use crate::blocks::{BlockMutant, ProofMutant, Trial};
 
 pub(super) fn all() -> Result<Vec<Trial>, Error> {
     Ok(vec![Trial::new(SlidingModeBlock::new("", "alone"), &[1, 2], 1)])
@@ -101,4 +101,30 @@ pub(super) const MUTANTS: &[BlockMutant] = &[
         "cleared_next = cleared",
     )
     .within(3_000_000),
+];
+
+pub(super) const PROOF_MUTANTS: &[ProofMutant] = &[
+    ProofMutant::new(
+        "a sum that goes on from the last one",
+        "begins_sum = (sequencer_step == OF_REFERENCE)",
+        "begins_sum = (sequencer_step == COULOMB)",
+    )
+    .violates("begins_anew"),
+    ProofMutant::new(
+        "a shift that loses the sign",
+        "by_one = $signed(shifter[50:1])",
+        "by_one = $signed({1'b0, shifter[49:1]})",
+    )
+    .of("scaled_product")
+    .violates("half_up"),
+    ProofMutant::new(
+        "a product that is cut instead of rounded",
+        "HALF = 53'd1",
+        "HALF = 53'd0",
+    )
+    .of("accumulator")
+    .violates("exact_sum"),
+    ProofMutant::new("a limit that is passed by an LSB", "borrow = 33'd1", "borrow = 33'd0")
+        .of("limiter")
+        .violates("known_over"),
 ];

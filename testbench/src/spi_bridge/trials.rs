@@ -1,8 +1,8 @@
-//! The sizes that the tests compare, and faults in the Verilog that the stimuli find.
+//! The sizes that the tests compare, faults in the Verilog that the stimuli find, and faults with which its proofs fail.
 
 use super::SpiBridgeBlock;
 use crate::Error;
-use crate::blocks::{BlockMutant, Trial};
+use crate::blocks::{BlockMutant, ProofMutant, Trial};
 
 pub(super) fn all() -> Result<Vec<Trial>, Error> {
     Ok(vec![Trial::new(SpiBridgeBlock::new("", "alone"), &[1, 2], 1)])
@@ -34,3 +34,10 @@ pub(super) const MUTANTS: &[BlockMutant] = &[
     ),
     BlockMutant::new("a time out that never comes", "| bad | (expired & begun)", "| bad").within(1_000_000),
 ];
+
+pub(super) const PROOF_MUTANTS: &[ProofMutant] = &[ProofMutant::new(
+    "a byte that goes on in the next selection",
+    "place_next = FIRST_PLACE",
+    "place_next = place",
+)
+.violates("known_lines")];

@@ -22,7 +22,7 @@ use posicast_machine::{hardware, machine_file};
 use crate::Error;
 use crate::blocks::reached::InsideAStage;
 use crate::blocks::registry::{AreaRow, RegistryRow};
-use crate::blocks::{Bins, Block, Reach, inside, not_in_rusthdl};
+use crate::blocks::{Bins, Block, ProofMutant, Reach, inside, not_in_rusthdl};
 use crate::formal::refused;
 use crate::lockstep::Clock;
 use crate::stimuli::Stimuli;
@@ -37,6 +37,29 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
         sizes.stages.iter().map(bench).collect()
     },
     proofs: proofs::tasks,
+    proof_mutants: &[
+        ProofMutant::new(
+            "an emergency stop of another axis on no wire",
+            ".group_emergency_stop   (group_emergency_stop)",
+            ".group_emergency_stop   (1'd0)",
+        )
+        .of("stage_axis")
+        .violates("group_stop_"),
+        ProofMutant::new(
+            "steps without the supervisor's enable",
+            ".enable        (steps_enable)",
+            ".enable        (1'd1)",
+        )
+        .of("stage_steps")
+        .violates("group_stop_steps"),
+        ProofMutant::new(
+            "a trip of the steps on no wire",
+            ".pwm_tripped            (steps_tripped)",
+            ".pwm_tripped            (1'd0)",
+        )
+        .of("stage_steps")
+        .violates("trip_is_off"),
+    ],
     areas: || {
         Ok(vec![
             area("XY, whole", "")?,

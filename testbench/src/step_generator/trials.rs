@@ -1,10 +1,10 @@
-//! The sizes that the tests compare, and faults in the Verilog that the stimuli find.
+//! The sizes that the tests compare, faults in the Verilog that the stimuli find, and faults with which its proofs fail.
 
 use posicast_blocks::step_generator::{StepGeneratorConfig, StepLinesActiveLow, StepMode, StepTimes};
 
 use super::StepGeneratorBlock;
 use crate::Error;
-use crate::blocks::{BlockMutant, Trial};
+use crate::blocks::{BlockMutant, ProofMutant, Trial};
 use crate::formal::refused;
 
 /// Few clocks each, so that a run has many steps and a proof reaches its covers soon.
@@ -63,3 +63,10 @@ pub(super) const MUTANTS: &[BlockMutant] = &[
         "magnitude[0] != 1'd1",
     ),
 ];
+
+pub(super) const PROOF_MUTANTS: &[ProofMutant] = &[ProofMutant::new(
+    "a direction that changes with the end of a pulse",
+    "may_turn | (!pulsing & (timer == HOLD))",
+    "may_turn | !pulsing",
+)
+.violates("known_held")];

@@ -1,10 +1,10 @@
-//! The sizes that the tests compare, and faults in the Verilog that the stimuli find.
+//! The sizes that the tests compare, faults in the Verilog that the stimuli find, and faults with which its proofs fail.
 
 use posicast_blocks::trace::TraceConfig;
 
 use super::TraceBlock;
 use crate::Error;
-use crate::blocks::{BlockMutant, Trial};
+use crate::blocks::{BlockMutant, ProofMutant, Trial};
 use crate::formal::refused;
 
 pub(super) fn all() -> Result<Vec<Trial>, Error> {
@@ -44,3 +44,10 @@ pub(super) const MUTANTS: &[BlockMutant] = &[
         "if (active & (ready | halting))",
     ),
 ];
+
+pub(super) const PROOF_MUTANTS: &[ProofMutant] = &[ProofMutant::new(
+    "a word behind the last one that is shown",
+    "read_address} < words",
+    "read_address} <= words",
+)
+.violates("shown_")];

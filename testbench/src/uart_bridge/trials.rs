@@ -1,8 +1,8 @@
-//! The sizes that the tests compare, and faults in the Verilog that the stimuli find.
+//! The sizes that the tests compare, faults in the Verilog that the stimuli find, and faults with which its proofs fail.
 
 use super::UartBridgeBlock;
 use crate::Error;
-use crate::blocks::{BlockMutant, Trial};
+use crate::blocks::{BlockMutant, ProofMutant, Trial};
 
 pub(super) fn all() -> Result<Vec<Trial>, Error> {
     Ok(vec![Trial::new(UartBridgeBlock::new("", "alone"), &[1, 2], 3)])
@@ -52,4 +52,26 @@ pub(super) const MUTANTS: &[BlockMutant] = &[
         "1'b1",
     )
     .within(20_000),
+];
+
+pub(super) const PROOF_MUTANTS: &[ProofMutant] = &[
+    ProofMutant::new(
+        "a request whose CRC is wrong",
+        "request_q <= whole",
+        "request_q <= delimiter & begun",
+    ),
+    ProofMutant::new(
+        "a request that is executed before all of it is checked",
+        "looks_next = 1'd1",
+        "looks_next = 1'd0",
+    )
+    .of("uart_sequencer")
+    .violates("known_all_seen"),
+    ProofMutant::new(
+        "a repeated request that is executed again",
+        "(|sequence_number) & (sequence_number == last_sequence)",
+        "1'b0",
+    )
+    .of("uart_sequencer")
+    .violates("known_again"),
 ];

@@ -28,6 +28,7 @@ pub(crate) const ROW: RegistryRow = RegistryRow {
     areas: || Ok(vec![AreaRow::new("", emit("")?)]),
     trials: trials::all,
     mutants: trials::MUTANTS,
+    proof_mutants: trials::PROOF_MUTANTS,
 };
 
 /// The bridge, which has one size.
