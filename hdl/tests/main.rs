@@ -4,7 +4,6 @@
 mod cascade;
 mod component_parts;
 mod kernel_rules;
-mod library;
 mod pitfalls;
 mod random;
 mod segments;

@@ -6,6 +6,7 @@ mod bench;
 mod crosssim;
 mod error_table;
 mod first_clocks;
+mod library;
 mod linked_stage;
 mod pwm;
 mod pwm_fault;

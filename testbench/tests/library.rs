@@ -1,7 +1,6 @@
-//! A module's name identifies its content: in the packages of all machines, modules of the same name are the same
-//! file.
-
-#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
+//! A module's name identifies its content: in the packages of all machines, modules of the same name are the same file.
+//!
+//! Every size that the registry has is compared, and blocks with many sizes at random ones.
 
 use posicast_blocks::absolute_encoder::{
     AbsoluteEncoderConfig, AbsoluteFrame, AbsoluteLimits, AbsoluteProtocol, AbsoluteTimes, FrameCheck, FrameStatusBit,
@@ -19,12 +18,11 @@ use posicast_blocks::step_generator::{StepGeneratorConfig, StepLinesActiveLow, S
 use posicast_blocks::trace::TraceConfig;
 use posicast_hdl::emit::{LIBRARY, Module};
 use posicast_hdl::{
-    absolute_encoder, absolute_feedback, axi_lite_bridge, axis, capture, cascade, compare, component, divider,
-    divider_share, drive_command, encoder_generator, excitation, group, inline_axis, inline_group, lasting_deviation,
-    linear_scale, probe_line, pulse_counter, pwm, realign, registers, sample_select, schedule, segments, setting_banks,
-    shaper, sliding_mode, spi_bridge, step_generator, time_base, trace, uart_bridge, wishbone_bridge,
+    absolute_encoder, cascade, component, divider, divider_share, group, inline_axis, inline_group, pwm, registers,
+    sample_select, schedule, setting_banks, shaper, step_generator, time_base, trace,
 };
 use posicast_taps::{Tap, TapTable};
+use posicast_testbench::blocks::{self, BenchSizes, Block};
 use std::collections::BTreeMap;
 
 /// Number of random configurations.
@@ -159,8 +157,32 @@ fn inline_axis_config(chance: &mut Chance) -> InlineAxisConfig {
         .active_low(low)
 }
 
-/// Returns the Verilog of every block, built with random settings for the machine `prefix`.
-fn machine(prefix: &str, chance: &mut Chance) -> Vec<Vec<Module>> {
+/// Returns the Verilog of every size of every block in the registry, for a machine of this name, each with its top last.
+fn registered(prefix: &str) -> Vec<Vec<Module>> {
+    let sizes = BenchSizes {
+        prefix: prefix.to_owned(),
+        ..blocks::library_sizes().unwrap()
+    };
+    let modules = |block: &dyn Block| block.modules().unwrap();
+    let mut all: Vec<_> = blocks::benches(&sizes)
+        .unwrap()
+        .iter()
+        .map(|bench| modules(bench.as_ref()))
+        .collect();
+    all.extend(
+        blocks::small_benches()
+            .unwrap()
+            .iter()
+            .map(|small| modules(small.block.as_ref())),
+    );
+    let trials = blocks::trials().unwrap().into_iter().flat_map(|block| block.trials);
+    all.extend(trials.map(|trial| modules(trial.block.as_ref())));
+    all.extend(blocks::areas().unwrap().into_iter().map(|row| row.modules));
+    all
+}
+
+/// Returns the Verilog of the blocks that have sizes, at random ones, for the machine `prefix`.
+fn sized(prefix: &str, chance: &mut Chance) -> Vec<Vec<Module>> {
     let tick = DividerConfig::new(chance.one_of(&[1000, 2500, 5000, 5001])).unwrap();
     let (shaper, pwm) = (shaper_config(chance), pwm_config(chance));
     let mut settings = Settings::default();
@@ -192,26 +214,8 @@ fn machine(prefix: &str, chance: &mut Chance) -> Vec<Vec<Module>> {
         divider_share::emit(axes, prefix),
         sample_select::emit(word_bits, channels, prefix),
         setting_banks::emit(&settings, prefix),
-        axis::emit(prefix),
-        segments::emit(prefix),
-        pulse_counter::emit(prefix),
-        sliding_mode::emit(prefix),
-        drive_command::emit(prefix),
-        linear_scale::emit(prefix),
-        probe_line::emit(prefix),
-        realign::emit(prefix),
-        lasting_deviation::emit(prefix),
-        compare::emit(prefix),
-        encoder_generator::emit(prefix),
         step_generator::emit(&step_generator_config(chance), prefix),
         absolute_encoder::emit(&absolute_encoder_config(chance), prefix),
-        absolute_feedback::emit(prefix),
-        capture::emit(prefix),
-        excitation::emit(prefix),
-        uart_bridge::emit(prefix),
-        spi_bridge::emit(prefix),
-        axi_lite_bridge::emit(prefix),
-        wishbone_bridge::emit(prefix),
     ];
     let components = [
         Component::shaper(shaper).unwrap(),
@@ -227,13 +231,28 @@ fn machine(prefix: &str, chance: &mut Chance) -> Vec<Vec<Module>> {
 }
 
 #[test]
+fn every_size_of_the_registry_has_a_name_of_its_own() {
+    let mut library: BTreeMap<String, Module> = BTreeMap::new();
+    let all = ["one", "another"].map(registered);
+    let [one, another] = all.each_ref().map(Vec::len);
+    assert!(one == another && one > 100, "{one}");
+    for module in all.into_iter().flatten().flatten() {
+        if module.name.starts_with(&format!("{LIBRARY}_")) {
+            let known = library.entry(module.name.clone()).or_insert_with(|| module.clone());
+            assert_eq!(*known, module, "twice in one library, and not the same");
+        }
+    }
+    assert!(library.len() > 50, "{}", library.len());
+}
+
+#[test]
 fn a_name_stands_for_one_content_in_all_machines() {
     let mut library: BTreeMap<String, String> = BTreeMap::new();
     let mut variants: BTreeMap<String, usize> = BTreeMap::new();
     for number in 0..MACHINES {
         let prefix = format!("machine{number}_x");
         let mut own: BTreeMap<String, Module> = BTreeMap::new();
-        for module in machine(&prefix, &mut Chance(number)).into_iter().flatten() {
+        for module in sized(&prefix, &mut Chance(number)).into_iter().flatten() {
             let there = own.entry(module.name.clone()).or_insert_with(|| module.clone());
             assert_eq!(*there, module, "twice in one package, and not the same");
             let Some(base) = module.name.strip_prefix(&format!("{LIBRARY}_")) else {
