@@ -43,7 +43,7 @@
 //! | [`axi_lite_bridge`], [`wishbone_bridge`] | the bridges from other buses to the registers |
 //! | [`bus_component`] | a component with one of these bridges |
 //! | [`machine`] | a machine's top module: the shapers of its axes, side by side |
-//! | [`emit`](mod@emit) | the typed emitter: RustHDL's syntax tree as Verilog |
+//! | [`emit`](mod@emit) | the typed emitter, a crate of its own, with the documentation of the kernels |
 
 pub mod absolute_encoder;
 pub mod absolute_feedback;

@@ -12,14 +12,13 @@
 
 use rust_hdl_core::prelude::*;
 
+use crate::emit::CONNECTIONS_TAG;
+
 /// A list of connections.
 #[derive(Default)]
 pub(crate) struct Connections {
     lines: String,
 }
-
-/// First line of a list.
-pub(crate) const CONNECTIONS_TAG: &str = "// @connections";
 
 impl Connections {
     /// Adds an output of the kernel.

@@ -12,7 +12,7 @@ mod rom;
 mod smul;
 mod synchroniser;
 
-pub(crate) use connections::{CONNECTIONS_TAG, Clocked, Connections, Part};
+pub(crate) use connections::{Clocked, Connections, Part};
 pub(crate) use dff::{Dff, Keep};
 pub(crate) use fault_latch::FaultLatch;
 pub(crate) use pin_register::PinRegister;

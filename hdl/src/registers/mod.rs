@@ -10,8 +10,7 @@ mod blocks;
 mod text;
 mod verilog;
 
-use crate::emit::names::check_name;
-use crate::emit::{EmitError, Header, Module, Parameter, digest, own_name, print};
+use crate::emit::{EmitError, Header, Module, Parameter, check_name, digest, own_name, print};
 use posicast_blocks::registers::{Access, Field, Register, RegisterMap};
 
 /// Verilog of the bank; [`name`] gives its name.

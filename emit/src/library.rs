@@ -17,7 +17,7 @@ pub fn own_name(prefix: &str, base: &str) -> String {
 }
 
 /// A short hash that represents contents in a name: FNV-1a, 32 bits.
-pub(crate) fn digest(text: &str) -> u32 {
+pub fn digest(text: &str) -> u32 {
     text.bytes().fold(0x811c_9dc5, |hash, byte| {
         (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193)
     })

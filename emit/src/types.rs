@@ -25,12 +25,13 @@ impl fmt::Display for Type {
 }
 
 impl Type {
-    pub(crate) fn bits(width: u32) -> Self {
+    /// The unsigned type of `width` bits.
+    pub fn bits(width: u32) -> Self {
         Self { width, signed: false }
     }
 
     /// The type of a port.
-    pub(crate) fn of(port: &Port) -> Self {
+    pub fn of(port: &Port) -> Self {
         Self {
             width: port.width,
             signed: port.signed,
@@ -64,7 +65,7 @@ impl Type {
     }
 
     /// The declaration, such as `signed [7:0]`; empty for a single unsigned bit.
-    pub(crate) fn declaration(self) -> String {
+    pub fn declaration(self) -> String {
         let sign = if self.signed { "signed " } else { "" };
         let range = if self.width == 1 {
             String::new()
@@ -76,7 +77,7 @@ impl Type {
 
     /// `pattern` as a sized literal: decimal, except for the most negative value, whose magnitude has no decimal
     /// literal.
-    pub(crate) fn literal(self, pattern: u64) -> String {
+    pub fn literal(self, pattern: u64) -> String {
         let width = self.width;
         let sign_bit = 1u64 << (width - 1);
         match (self.signed, pattern & sign_bit != 0) {

@@ -29,7 +29,11 @@ const RESERVED: &str = "\
 static RESERVED_WORDS: LazyLock<HashSet<&str>> = LazyLock::new(|| RESERVED.split(' ').collect());
 
 /// Checks a name that is used by itself in the Verilog.
-pub(crate) fn check_name(name: &str) -> Result<(), EmitCause> {
+///
+/// # Errors
+/// [`EmitCause::BadName`] if it is not plain lower-case snake case, [`EmitCause::ReservedWord`] if it is a keyword of
+/// Verilog or SystemVerilog.
+pub fn check_name(name: &str) -> Result<(), EmitCause> {
     check_form(name)?;
     if RESERVED_WORDS.contains(name) {
         return Err(EmitCause::ReservedWord(name.to_owned()));

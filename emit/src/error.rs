@@ -19,7 +19,8 @@ pub struct EmitError {
 }
 
 impl EmitError {
-    pub(crate) fn new(block: &str, signal: &str, cause: EmitCause) -> Self {
+    /// Creates the error of a block; an empty `signal` means none.
+    pub fn new(block: &str, signal: &str, cause: EmitCause) -> Self {
         let signal = if signal.is_empty() { "-" } else { signal };
         Self {
             block: block.to_owned(),

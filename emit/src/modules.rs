@@ -10,7 +10,7 @@ use super::numbers;
 use super::print::{self, Lines};
 use super::scope::{NetId, Role, Scope};
 use super::statements::{comment_text, statements};
-use super::{EmitOptions, Module, flow, head};
+use super::{EmitOptions, Heads, Module, flow, head};
 use posicast_blocks::{Direction, Port, PortNote};
 use rust_hdl_core::ast::VerilogStatement;
 use rust_hdl_core::prelude::Verilog;
@@ -19,6 +19,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The modules written so far, leaves first.
 pub(super) struct Modules<'a> {
     options: &'a EmitOptions,
+    heads: Heads,
     written: Vec<Module>,
     /// Contents of each module by its name.
     by_name: BTreeMap<String, Content>,
@@ -41,9 +42,10 @@ struct Draft {
 }
 
 /// Writes `top` and everything in it.
-pub(super) fn modules(top: &Node, options: &EmitOptions) -> Result<Vec<Module>, EmitError> {
+pub(super) fn modules(top: &Node, options: &EmitOptions, heads: Heads) -> Result<Vec<Module>, EmitError> {
     let mut modules = Modules {
         options,
+        heads,
         written: Vec::new(),
         by_name: BTreeMap::new(),
         untagged: BTreeMap::new(),
@@ -118,7 +120,7 @@ impl Modules<'_> {
             clocking: clocking.as_ref(),
         };
         let body = writer.body(&bits_read, &children, &unread, notes);
-        let (tagged, about) = tagged(kernel, node)?;
+        let (tagged, about) = tagged(kernel, node, self.heads)?;
         Ok(Draft {
             tagged,
             of_machine,
@@ -188,7 +190,7 @@ impl Modules<'_> {
 }
 
 /// The base name of a kernel's module from its `comment!("@module name")`, and the head of its file.
-fn tagged(kernel: &[VerilogStatement], node: &Node) -> Result<(Option<String>, Vec<String>), EmitError> {
+fn tagged(kernel: &[VerilogStatement], node: &Node, heads: Heads) -> Result<(Option<String>, Vec<String>), EmitError> {
     for statement in kernel {
         let VerilogStatement::Comment(raw) = statement else {
             continue;
@@ -197,7 +199,7 @@ fn tagged(kernel: &[VerilogStatement], node: &Node) -> Result<(Option<String>, V
         if let Some(tag) = text.strip_prefix("@module ") {
             let name = numbers::fill(tag, node).and_then(|name| names::check_name(&name).map(|()| name));
             let name = name.map_err(|cause| EmitError::new(&node.path, "", cause))?;
-            return Ok((Some(name), head::head(tag)));
+            return Ok((Some(name), head::head(heads, tag)));
         }
     }
     Ok((None, Vec::new()))

@@ -16,14 +16,15 @@ const RUSTHDL: &str = "RustHDL description";
 
 /// Indented text that is written line by line.
 #[derive(Debug, Default)]
-pub(crate) struct Lines {
-    pub(crate) text: String,
+pub struct Lines {
+    /// What is written so far.
+    pub text: String,
     depth: usize,
 }
 
 impl Lines {
     /// Writes a line, wrapped if it is too long, or several lines.
-    pub(crate) fn line(&mut self, line: &str) {
+    pub fn line(&mut self, line: &str) {
         for line in line.split('\n') {
             let indented = match line {
                 "" => String::new(),
@@ -35,13 +36,13 @@ impl Lines {
     }
 
     /// Writes `open`, then what `inner` writes one level deeper, then `close`.
-    pub(crate) fn nest(&mut self, open: &str, close: &str, inner: impl FnOnce(&mut Self)) {
+    pub fn nest(&mut self, open: &str, close: &str, inner: impl FnOnce(&mut Self)) {
         self.line(open);
         self.nest_rest(close, inner);
     }
 
     /// Does the same as [`nest`](Self::nest) below a line that is already written.
-    pub(crate) fn nest_rest(&mut self, close: &str, inner: impl FnOnce(&mut Self)) {
+    pub fn nest_rest(&mut self, close: &str, inner: impl FnOnce(&mut Self)) {
         self.depth += 1;
         inner(self);
         self.depth -= 1;
@@ -49,7 +50,7 @@ impl Lines {
     }
 
     /// Writes a blank line and what `inner` writes, if it writes anything.
-    pub(crate) fn section(&mut self, inner: impl FnOnce(&mut Self)) {
+    pub fn section(&mut self, inner: impl FnOnce(&mut Self)) {
         let start = self.text.len();
         self.line("");
         let empty = self.text.len();
@@ -95,7 +96,7 @@ fn header(name: &str, about: &[&str], parameters: &[Parameter], made_from: &str)
 }
 
 /// The complete file of a module.
-pub(crate) fn file(name: &str, header_text: &str, body: &str) -> String {
+pub fn file(name: &str, header_text: &str, body: &str) -> String {
     format!("{header_text}module {name} {body}\n`default_nettype wire\n")
 }
 
@@ -118,7 +119,7 @@ pub(super) fn top_header(name: &str, about: &[&str], header_data: &Header) -> St
 }
 
 /// Header of a module that is not written from a kernel: a register bank or a composition.
-pub(crate) fn data_header(name: &str, header_data: &Header, made_from: &str) -> String {
+pub fn data_header(name: &str, header_data: &Header, made_from: &str) -> String {
     header(name, &[header_data.about.as_str()], &header_data.parameters, made_from)
 }
 
@@ -136,7 +137,7 @@ pub(super) fn ports(node: &Node, is_reg: &dyn Fn(&Signal) -> bool, notes: &[Port
 }
 
 /// The port list of a module that connects others: `clk` first if it is clocked, and no output is a variable.
-pub(crate) fn wire_port_list(clocked: bool, ports: &[Port], notes: &[PortNote]) -> String {
+pub fn wire_port_list(clocked: bool, ports: &[Port], notes: &[PortNote]) -> String {
     let clock = clocked.then(|| ("input  wire", Type::bits(1), "clk".to_owned()));
     let ports = ports.iter().map(|port| {
         let keyword = match port.direction {
@@ -149,7 +150,7 @@ pub(crate) fn wire_port_list(clocked: bool, ports: &[Port], notes: &[PortNote]) 
 }
 
 /// `(…);` with one port per line: keyword, type, name, and the port's purpose as a comment.
-pub(crate) fn noted_port_list(ports: &[(&str, Type, String)], notes: &[PortNote]) -> String {
+pub fn noted_port_list(ports: &[(&str, Type, String)], notes: &[PortNote]) -> String {
     if ports.is_empty() {
         return "();\n".to_owned();
     }
@@ -217,7 +218,7 @@ pub(super) fn declarations(lines: &mut Lines, declarations: &[(&str, Type, Strin
 }
 
 /// An instance with named connections in one column.
-pub(crate) fn instance(lines: &mut Lines, module: &str, name: &str, pins: &[(String, String)]) {
+pub fn instance(lines: &mut Lines, module: &str, name: &str, pins: &[(String, String)]) {
     let width = pins.iter().map(|(port, _)| port.len()).max().unwrap_or(0);
     lines.nest(&format!("{module} {name} ("), ");", |lines| {
         for (index, (port, net)) in pins.iter().enumerate() {

@@ -51,10 +51,10 @@ mod ir;
 mod leaf;
 mod library;
 mod modules;
-pub(crate) mod names;
+mod names;
 mod numbers;
 mod paths;
-pub(crate) mod print;
+pub mod print;
 mod scope;
 mod sizes;
 mod statements;
@@ -65,10 +65,13 @@ mod wrap;
 pub use compose::{ModuleInstance, compose};
 pub use connect::connect;
 pub use error::{EmitCause, EmitError};
-pub(crate) use library::digest;
-pub use library::{add, own_name, shared_name};
-pub use names::LIBRARY;
+pub use library::{add, digest, own_name, shared_name};
+pub use names::{LIBRARY, check_name};
 pub use types::Type;
+
+/// First line of the text of the block in which a kernel lists the connections that its logic does not state, each in a line:
+/// `output PORT SOURCE`, `input PART.PORT SOURCE`, or `part NAME` for the clock and reset of a part.
+pub const CONNECTIONS_TAG: &str = "// @connections";
 
 use posicast_blocks::{Port, PortNote};
 use rust_hdl_core::prelude::Block;
@@ -141,7 +144,7 @@ pub struct Parameter {
 
 impl Parameter {
     /// A row of the table.
-    pub(crate) fn new(name: impl Into<String>, value: impl ToString, meaning: impl Into<String>) -> Self {
+    pub fn new(name: impl Into<String>, value: impl ToString, meaning: impl Into<String>) -> Self {
         Self {
             name: name.into(),
             value: value.to_string(),
@@ -150,14 +153,17 @@ impl Parameter {
     }
 }
 
-/// Writes `block` as Verilog: sub-modules first, the top last.
+/// Documentation of the kernels' files: the name in each `@module` tag, and the lines behind `//!`.
+pub type Heads = &'static [(&'static str, &'static str)];
+
+/// Writes `block` as Verilog: sub-modules first, the top last. `heads` become the comments at the heads of the kernels' modules.
 ///
 /// # Errors
 /// [`EmitError`] for the first construct that cannot be expressed exactly, or that breaks a rule of the kernels.
-pub fn emit<B: Block + ?Sized>(block: &B, options: &EmitOptions) -> Result<Vec<Module>, EmitError> {
+pub fn emit<B: Block + ?Sized>(block: &B, options: &EmitOptions, heads: Heads) -> Result<Vec<Module>, EmitError> {
     check_names(options)?;
     let top = collect::collect(block, &options.top)?;
-    modules::modules(&top, options)
+    modules::modules(&top, options, heads)
 }
 
 /// Writes a kernel at the sizes `wanted` as Verilog, from the same kernel at a few other sizes.
@@ -172,6 +178,7 @@ pub fn emit_sized<B: Block + ?Sized>(
     samples: &[(&[u32], &B)],
     wanted: &[u32],
     options: &EmitOptions,
+    heads: Heads,
 ) -> Result<Vec<Module>, EmitError> {
     check_names(options)?;
     let sample = |(sizes, block): &(&'_ [u32], &B)| {
@@ -180,7 +187,7 @@ pub fn emit_sized<B: Block + ?Sized>(
     };
     let samples = samples.iter().map(sample).collect::<Result<Vec<_>, EmitError>>()?;
     let top = sizes::resolve(samples, wanted)?;
-    modules::modules(&top, options)
+    modules::modules(&top, options, heads)
 }
 
 fn check_names(options: &EmitOptions) -> Result<(), EmitError> {

@@ -1,9 +1,9 @@
 //! Converts RustHDL's object tree to a tree of nodes, each a block with its signals, sub-blocks and kernel, so that the
 //! following passes do not depend on RustHDL's walk.
 
+use super::CONNECTIONS_TAG;
 use super::error::{EmitCause, EmitError};
 use super::types::Type;
-use crate::prim::CONNECTIONS_TAG;
 use rust_hdl_core::prelude::{Atom, AtomKind, Block, Probe, TypeDescriptor, TypeKind, Verilog, VerilogLiteral};
 use std::collections::BTreeMap;
 
