@@ -91,11 +91,14 @@ fn a_fingerprint_changes_with_verilog_properties_and_engine_but_no_comment() {
     let same = proof().fingerprint();
     assert_eq!(proof().fingerprint(), same);
     let mut verilog = proof();
-    verilog.modules[0].text.push('\n');
+    verilog.modules[0].text.push_str("wire other;\n");
     let mut engine = proof();
     engine.engine = posicast_testbench::formal::Engine::Induction { clocks: 7 };
     let mut comment = proof();
     comment.modules[0].text.insert_str(0, "// A word about it.\n");
+    let behind_code = comment.modules[0].text.replacen(";\n", "; // what it is\n", 1);
+    assert_ne!(behind_code, comment.modules[0].text);
+    comment.modules[0].text = behind_code;
     assert_eq!(comment.fingerprint(), same);
     let other_properties = posicast_testbench::blocks::proofs_named("divider")
         .unwrap()

@@ -7,7 +7,7 @@ use super::tool::{ASSERTS, COVERS, input_files};
 
 impl Task {
     /// SHA-256, in 32 hexadecimal digits, of everything that decides the result of this task: Verilog, properties, scripts, engine,
-    /// and the program that runs the engines. Lines of comments are not in it, nor are the versions of Yosys and ABC.
+    /// and the program that runs the engines. Comments are not in it, nor are the versions of Yosys and ABC.
     pub fn fingerprint(&self) -> String {
         let mut hash = Sha256::new();
         let mut add = |text: &str| {
@@ -22,14 +22,24 @@ impl Task {
         add(&format!("{:?}", self.engine));
         // The part before its tests.
         let runner = include_str!("tool.rs").split("#[cfg(test)]").next();
-        add(&without_comments(runner.unwrap_or_default()));
+        let is_code = |line: &&str| !line.trim_start().starts_with("//");
+        add(&runner
+            .unwrap_or_default()
+            .split_inclusive('\n')
+            .filter(is_code)
+            .collect::<String>());
         let digits = hash.finalize();
         digits.iter().take(16).map(|byte| format!("{byte:02x}")).collect()
     }
 }
 
-/// The text without the lines that are comments of Verilog.
-fn without_comments(text: &str) -> String {
-    let lines = text.split_inclusive('\n');
-    lines.filter(|line| !line.trim_start().starts_with("//")).collect()
+/// Verilog without comments to the end of a line, and without lines that have nothing else. A line with a string is kept whole.
+fn without_comments(verilog: &str) -> String {
+    let code = verilog.lines().map(|line| match line.split_once("//") {
+        Some((code, _)) if !code.contains('"') => code.trim_end(),
+        _ => line.trim_end(),
+    });
+    code.filter(|code| !code.is_empty())
+        .flat_map(|code| [code, "\n"])
+        .collect()
 }
