@@ -3,22 +3,9 @@
 //! Links and the fences of drawings are removed. Characters outside ASCII, which some Verilog tools cannot read, are
 //! replaced.
 
-use super::Heads;
+use posicast_blocks::in_ascii;
 
-/// Characters outside ASCII in sentences, and their replacements.
-const WORDS: [(char, &str); 11] = [
-    ('−', "-"),
-    ('·', "*"),
-    ('×', "x"),
-    ('…', "..."),
-    ('Σ', "sum of"),
-    ('±', "+/-"),
-    ('≥', ">="),
-    ('≤', "<="),
-    ('λ', "lambda"),
-    ('ω', "omega"),
-    ('│', "|"),
-];
+use super::Heads;
 
 /// The head of the kernel with this tag, line by line; a paragraph is one line.
 pub(super) fn head(heads: Heads, tag: &str) -> Vec<String> {
@@ -78,14 +65,12 @@ pub(super) fn plain_words(line: &str) -> String {
         };
     }
     text.push_str(rest);
-    let mut plain = text.replace("super::", "").replace("\\|", "|");
-    plain = plain
+    let plain = text
+        .replace("super::", "")
+        .replace("\\|", "|")
         .replace('∫', "integral of ")
         .replace("integral of  ", "integral of ");
-    for (letter, instead) in WORDS {
-        plain = plain.replace(letter, instead);
-    }
-    plain
+    in_ascii(&plain)
 }
 
 /// Replaces a character of a drawing by one character, so that columns stay aligned.

@@ -55,7 +55,7 @@ pub mod word;
 
 pub use moore::{FOREVER, Moore, OutputKind};
 pub(crate) use moore::{quiet_at_rest, show_each};
-pub use ports::{DescribedPort, PortList, PortNote, PortRow, SizedPortRow, port_notes};
+pub use ports::{DescribedPort, PortList, PortNote, PortRow, SizedPortRow, in_ascii, port_notes};
 pub(crate) use ports::{clocked_block, ports};
 
 /// The blocks with a datasheet, and their ports, which the table in `docs/NAME.md` shows.

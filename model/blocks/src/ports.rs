@@ -139,6 +139,29 @@ fn note(name: &str, is_array: bool, meaning: &[&str], unit: &str) -> PortNote {
     }
 }
 
+/// Characters outside ASCII that documentation of ports and kernels has, and their replacements.
+const WORDS: [(char, &str); 12] = [
+    ('−', "-"),
+    ('·', "*"),
+    ('×', "x"),
+    ('…', "..."),
+    ('Σ', "sum of"),
+    ('±', "+/-"),
+    ('≥', ">="),
+    ('≤', "<="),
+    ('λ', "lambda"),
+    ('ω', "omega"),
+    ('²', "^2"),
+    ('│', "|"),
+];
+
+/// A text of the documentation for a comment in Verilog, which some tools cannot read outside ASCII.
+pub fn in_ascii(text: &str) -> String {
+    WORDS.iter().fold(text.to_owned(), |text, (letter, instead)| {
+        text.replace(*letter, instead)
+    })
+}
+
 /// Returns the purpose of each port of a list, in its order.
 pub fn port_notes(list: &[impl DescribedPort]) -> Vec<PortNote> {
     list.iter().map(DescribedPort::note).collect()

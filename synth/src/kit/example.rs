@@ -6,6 +6,7 @@ use super::{Kit, KitShaper, is_input, range};
 use posicast_blocks::Port;
 use posicast_blocks::axis_shaper::AxisShaperConfig;
 use posicast_blocks::cascade;
+use posicast_blocks::in_ascii;
 use posicast_blocks::shaper::{moving, plain};
 
 /// Connection of a port of the shaper: none, a constant, or the user's signal.
@@ -36,12 +37,13 @@ fn meaning(shaper: &KitShaper<'_>, port: &Port) -> String {
         .iter()
         .find(|row| row.name == port.name || (row.count.is_some() && of_array(row.name)));
     let lines = row.map_or(&[][..], |row| row.meaning);
-    lines
+    let words = lines
         .iter()
         .map(|line| line.trim())
         .collect::<Vec<_>>()
         .join(" ")
-        .replace('`', "")
+        .replace('`', "");
+    in_ascii(&words)
 }
 
 /// The user's signal at a port: that of the example if it has one.

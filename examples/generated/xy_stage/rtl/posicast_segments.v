@@ -35,7 +35,7 @@ module posicast_segments (
     input  wire signed [31:0] preset_position,    // Position of a preset, taken at that tick
                                                   // [counts]
     input  wire [30:0]        stop_deceleration,  // Deceleration of a quick stop [counts per
-                                                  // tick², Q7.24]
+                                                  // tick^2, Q7.24]
     input  wire [5:0]         low_water,          // `low` is high while at most this many entries
                                                   // wait
     input  wire               clear_flags,        // Clears the sticky flags
@@ -47,7 +47,7 @@ module posicast_segments (
     output wire signed [31:0] position,           // Position of the command [counts, Q24.8]
     output wire signed [31:0] velocity,           // Velocity of the command [counts per tick,
                                                   // Q16.16]
-    output wire signed [31:0] acceleration,       // Acceleration of the command [counts per tick²,
+    output wire signed [31:0] acceleration,       // Acceleration of the command [counts per tick^2,
                                                   // Q8.24]
     output wire               valid,              // One clock: position, velocity and acceleration
                                                   // are those of this tick

@@ -40,7 +40,7 @@ module posicast_sliding_mode (
     input  wire signed [31:0] velocity_reference,      // Reference velocity dr [counts per tick,
                                                        // Q16.16]
     input  wire signed [31:0] acceleration_reference,  // Reference acceleration ddr [counts per
-                                                       // tick², Q8.24]
+                                                       // tick^2, Q8.24]
     input  wire signed [31:0] position,                // Measured position x, changing at any time
                                                        // [counts]
     input  wire signed [31:0] velocity,                // Measured velocity v [counts per tick,

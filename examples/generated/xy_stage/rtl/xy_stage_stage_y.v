@@ -99,7 +99,7 @@ module xy_stage_stage_y (
     input  wire [15:0]        off_causes,                 // One bit per cause: 1 switches the
                                                           // outputs off, 0 leads to a quick stop
     input  wire [30:0]        stop_deceleration,          // Deceleration of a quick stop [counts
-                                                          // per tick², Q7.24]
+                                                          // per tick^2, Q7.24]
     input  wire [15:0]        settle_ticks,               // Time from the command's standstill to
                                                           // that of the shaped command: the
                                                           // shaper's longest delay [ticks]
