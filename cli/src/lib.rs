@@ -1,7 +1,7 @@
 //! The `posicast` command: from a machine's modes to verified input-shaper hardware.
 //!
 //! There is one file per subcommand. This crate reads arguments, calls the steps of `posicast-flow`, and prints their documents, as JSON
-//! or as text ([`render`]); it computes nothing itself.
+//! or as text (`render`); it computes nothing itself.
 //! Exit status: 0 all checks hold, 1 a check failed, 2 bad usage or input, 3 a required tool is missing; 130 and 143 after
 //! SIGINT and SIGTERM, with nothing left behind.
 //!

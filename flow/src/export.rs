@@ -34,9 +34,9 @@ pub struct Options {
 /// What takes the impulses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ExportFormat {
-    /// Section [input_shaper] of Klipper's configuration
+    /// Section `[input_shaper]` of Klipper's configuration
     Klipper,
-    /// Section [input_shaper] of Kalico's configuration
+    /// Section `[input_shaper]` of Kalico's configuration
     Kalico,
     /// M593 of Marlin
     Marlin,

@@ -2,7 +2,7 @@
 //! wires, [stand-ins](super::stand_in) in place of all pins but the line's.
 //!
 //! An open input is in the state that stops the axes: limits, faults and the emergency stop are low when they are asserted, and drives are
-//! not ready. So all inputs have resistors to ground in the device, but for those of [`OPEN_IS_HIGH`].
+//! not ready. So all inputs have resistors to ground in the device, but for those of `OPEN_IS_HIGH`.
 
 use super::TopFiles;
 use super::stand_in::StandIn;

@@ -208,7 +208,7 @@ fn literal(port: &Port, value: u64) -> String {
     format!("{}'d{value}", port.width)
 }
 
-/// Returns the modules of a stage, the top last, with all mutants in them: an input [`SELECT`] of the top and of each axis chooses one,
+/// Returns the modules of a stage, the top last, with all mutants in them: an input `SELECT` of the top and of each axis chooses one,
 /// from 1 on; 0 is the stage itself.
 ///
 /// # Errors

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! `avm_mapped` is a function of the address: whether the register map has a word there. Everything else is that of
-//! [`axi_lite_bridge`](super::axi_lite_bridge), [`wishbone_bridge`](super::wishbone_bridge) and the component; the datasheets are theirs.
+//! [`axi_lite_bridge`], [`wishbone_bridge`] and the component; the datasheets are theirs.
 //!
 //! | ports | |
 //! |---|---|

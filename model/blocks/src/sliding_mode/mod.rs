@@ -9,7 +9,7 @@
 //! command = limit( KA·a + KF·ddr + KR·dr + KV·v + KC·sat(dr/fade) )            duty = KD·command
 //! ```
 //!
-//! Everything is in counts and ticks T; unit conversions are in the gains ([`posicast_machine::control`]). One multiplier
+//! Everything is in counts and ticks T; unit conversions are in the gains (`posicast_machine::control`). One multiplier
 //! computes a command in [`CONTROL_CLOCKS`], whatever the numbers are; each of its steps reads its gain at
 //! `setting_address`.
 //!
