@@ -131,6 +131,12 @@ impl Bed {
         })
     }
 
+    /// Clocks of the filter of an axis's encoder; 0 without one.
+    pub(super) fn encoder_filter_clocks(&self, axis: usize) -> u64 {
+        let encoder = self.machine.axes[axis].encoder.as_ref();
+        encoder.map_or(0, |encoder| encoder.filter_clocks.into())
+    }
+
     /// A bench at reset, with the RTL beside it if `device` has one.
     ///
     /// # Errors

@@ -113,7 +113,7 @@ impl Running<'_> {
             self.bench
                 .write(&format!("{name}_watchdog"), u32::from(self.case.off_causes) << 16)?;
         }
-        self.positions = Positions::begin(&mut self.bench, self.case)?;
+        self.positions = Positions::begin(&mut self.bench, self.bed, self.case)?;
         self.bench.write("interrupt_enable", INTERRUPTS)?;
         let plan = if self.case.row.expects.in_hold {
             Plan::default()

@@ -5,7 +5,7 @@ use super::passages::{Passage, Row, While, high, of_row, pulses};
 use super::touches::{Edge, edges, waiting};
 use super::{AXIS_PINS, Armed, Entry, Positions, SHARED_PINS};
 use crate::fault_campaign::kind::FaultKind;
-use crate::fault_campaign::machine::{FILTER_CLOCKS, TICK_CLOCKS};
+use crate::fault_campaign::machine::TICK_CLOCKS;
 use crate::stage_bench::{PinChange, StageBench};
 use posicast_testbench::Error;
 
@@ -83,7 +83,7 @@ impl Positions {
             let counted = if bench.plant(axis).has_steps() {
                 of_steps(&lines[0], &lines[1])
             } else {
-                of_quadrature(lines, FILTER_CLOCKS, record.end)
+                of_quadrature(lines, self.encoder_filter_clocks[axis], record.end)
             };
             let found = self.pulses(&record, axis, &counted, passes);
             failures.extend(found.into_iter().map(|what| format!("{name}: compare: {what}")));

@@ -31,6 +31,7 @@ use self::passages::Row;
 use self::touches::Touched;
 use super::case::Case;
 use super::kind::FaultKind;
+use super::machine::Bed;
 use crate::stage_bench::StageBench;
 use posicast_testbench::Error;
 
@@ -80,6 +81,8 @@ pub(super) struct Positions {
     kind: FaultKind,
     /// The rows of each axis; none if the machine has no compare.
     armed: [Vec<Armed>; 2],
+    /// Clocks of the filter of each axis's encoder.
+    encoder_filter_clocks: [u64; 2],
     touched: Touched,
     /// Clock before which no edge is wanted: the capture was enabled, or cleared by a host.
     from: u64,
@@ -92,7 +95,7 @@ pub(super) struct Positions {
 
 impl Positions {
     /// Arms rows of positions and enables the capture, in HOLD; `None` for a machine that has neither.
-    pub(super) fn begin(bench: &mut StageBench, case: &Case) -> Result<Option<Self>, Error> {
+    pub(super) fn begin(bench: &mut StageBench, bed: &Bed, case: &Case) -> Result<Option<Self>, Error> {
         if !bench.has("capture_control") {
             return Ok(None);
         }
@@ -102,6 +105,7 @@ impl Positions {
         let mut found = Self {
             kind: case.row.kind,
             armed: [Vec::new(), Vec::new()],
+            encoder_filter_clocks: [0, 1].map(|axis| bed.encoder_filter_clocks(axis)),
             touched,
             from: 0,
             is_cleared: false,
