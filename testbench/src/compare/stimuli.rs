@@ -121,7 +121,8 @@ impl Stimuli for CompareRandom {
         }
         now.disarm = self.one_in(1200);
         if self.entries_left == 0 && self.one_in(1500) {
-            let long = LIST_POSITIONS as u32 + 4;
+            // A fifth of the entries is refused.
+            let long = 2 * LIST_POSITIONS as u32;
             self.entries_left = *pick(&mut self.rng, &[1, 2, 3, 10, 30, long]);
             self.entry = self.count.wrapping_add(self.rng.random_range(-80..=20));
             (now.disarm, now.entries_clear) = (true, false);

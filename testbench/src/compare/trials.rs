@@ -5,7 +5,7 @@ use crate::Error;
 use crate::blocks::{BlockMutant, ProofMutant, Trial};
 
 pub(super) fn all() -> Result<Vec<Trial>, Error> {
-    Ok(vec![Trial::new(CompareBlock::new("", "alone"), &[1, 2], 3)])
+    Ok(vec![Trial::new(CompareBlock::new("", "alone"), &[1, 2], 20)])
 }
 
 pub(super) const MUTANTS: &[BlockMutant] = &[
