@@ -72,7 +72,7 @@ impl Arguments {
 
 fn cover() -> Result<bool, Error> {
     let arguments = Arguments::read()?;
-    let mut blocks = subjects()?;
+    let (mut blocks, all) = (subjects()?, subjects()?);
     if let Some(unknown) = arguments
         .blocks
         .iter()
@@ -91,13 +91,12 @@ fn cover() -> Result<bool, Error> {
     let (measured, problems): (Vec<_>, Vec<_>) = cores::each(&blocks, |block| one(block.as_ref()), show)?
         .into_iter()
         .unzip();
-    let outdated = outdated(&measured, &explanations);
+    let outdated = outdated(&measured, &all, &explanations);
     outdated.iter().for_each(|problem| eprintln!("{problem}"));
     let table = table::markdown(&measured, &explanations);
     print!("{table}");
     if arguments.write {
-        let subjects = subjects()?;
-        table::MARKS.renew(|old| table::merged(old, &table, &subjects))?;
+        table::MARKS.renew(|old| table::merged(old, &table, &all))?;
     }
     Ok(problems.iter().all(Vec::is_empty) && outdated.is_empty())
 }

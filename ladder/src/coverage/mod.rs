@@ -171,9 +171,14 @@ impl Measured {
         }
     }
 
+    /// The block and its instance, as explanations name it.
+    fn name(&self) -> String {
+        format!("{} {}", self.block, self.instance)
+    }
+
     /// Problems of the measurement: unexplained holes, and wrong values.
     pub fn problems(&self, explanations: &[Explanation]) -> Vec<String> {
-        let name = format!("{} {}", self.block, self.instance);
+        let name = self.name();
         let unexplained = self
             .holes
             .iter()
@@ -188,14 +193,21 @@ impl Measured {
     }
 }
 
-/// The explanations of these blocks that match no hole of them: their points are reached now, or have another name.
-pub fn outdated(measured: &[Measured], explanations: &[Explanation]) -> Vec<String> {
+/// The explanations that match no hole: their points are reached now, or have another name. An explanation that concerns several of
+/// the `subjects` is judged only if all of these were measured.
+pub fn outdated(measured: &[Measured], subjects: &[Box<dyn Block>], explanations: &[Explanation]) -> Vec<String> {
     let mut outdated = Vec::new();
     for explanation in explanations {
-        let names = measured.iter().map(|of| (format!("{} {}", of.block, of.instance), of));
-        let concerned: Vec<_> = names.filter(|(name, _)| explanation.concerns(name)).collect();
-        let fits = |(name, of): &(String, &Measured)| of.holes.iter().any(|hole| explanation.explains(name, hole));
-        if !concerned.is_empty() && !concerned.iter().any(fits) {
+        let concerned: Vec<_> = measured.iter().filter(|of| explanation.concerns(&of.name())).collect();
+        let is_measured = |name: &String| concerned.iter().any(|of| of.name() == *name);
+        let names = subjects
+            .iter()
+            .map(|block| format!("{} {}", block.name(), block.instance()));
+        let is_judged = names
+            .filter(|name| explanation.concerns(name))
+            .all(|name| is_measured(&name));
+        let fits = |of: &&Measured| of.holes.iter().any(|hole| explanation.explains(&of.name(), hole));
+        if is_judged && !concerned.is_empty() && !concerned.iter().any(fits) {
             outdated.push(format!("no hole is left for the explanation `{explanation}`"));
         }
     }
