@@ -72,15 +72,17 @@ impl Arguments {
 
 fn cover() -> Result<bool, Error> {
     let arguments = Arguments::read()?;
-    let (mut blocks, all) = (subjects()?, subjects()?);
+    let all = subjects()?;
     if let Some(unknown) = arguments
         .blocks
         .iter()
-        .find(|name| !blocks.iter().any(|block| block.name() == *name))
+        .find(|name| !all.iter().any(|block| block.name() == *name))
     {
         return Err(Error::Option(format!("--block {unknown}: no such block")));
     }
-    blocks.retain(|block| arguments.blocks.is_empty() || arguments.blocks.iter().any(|name| name == block.name()));
+    let is_wanted = |name: &str| arguments.blocks.is_empty() || arguments.blocks.iter().any(|wanted| wanted == name);
+    let blocks = all.iter().map(AsRef::as_ref);
+    let blocks: Vec<&dyn Block> = blocks.filter(|block: &&dyn Block| is_wanted(block.name())).collect();
     let explanations = explanation::all()?;
     let one = |block: &dyn Block| {
         let of = measure(block, arguments.clocks)?;
@@ -88,9 +90,7 @@ fn cover() -> Result<bool, Error> {
         Ok::<_, Error>((of, problems))
     };
     let show = |(_, problems): &(_, Vec<String>)| problems.iter().for_each(|problem| eprintln!("{problem}"));
-    let (measured, problems): (Vec<_>, Vec<_>) = cores::each(&blocks, |block| one(block.as_ref()), show)?
-        .into_iter()
-        .unzip();
+    let (measured, problems): (Vec<_>, Vec<_>) = cores::each(&blocks, |block| one(*block), show)?.into_iter().unzip();
     let outdated = outdated(&measured, &all, &explanations);
     outdated.iter().for_each(|problem| eprintln!("{problem}"));
     let table = table::markdown(&measured, &explanations);
